@@ -119,47 +119,47 @@ void add_method(const Case& read, const RunSpec& spec, BuiltCase& built) {
 
 /// The mass that a tuned point mass gets: that of the structure without it, see tuned_mass.
 std::vector<double> tuned_masses(const Case& read, const RunSpec& spec) {
-  const Values* tuned = nullptr;
-  for (const Values& mass : read.values.tables("mass")) {
-    if (!mass.has("tuned_frequency") || mass.has("mass")) continue;
+  const CaseMass* tuned = nullptr;
+  for (const CaseMass& mass : read.input->masses) {
+    if (mass.mass) continue;
     if (tuned) fail(mass, "tuned_frequency", "at most one tuned mass", "a second one");
     tuned = &mass;
   }
   if (!tuned) return {};
   BuiltCase without;
   CaseNames names;
-  names.space = space_of(read);
+  names.space = read.input->space;
   ModelBuilder builder(names.space);
-  add_nodes(read.values, builder, names);
+  add_nodes(*read.input, builder, names);
   add_mesh(read, builder, names);
   add_functions(read, names);
-  add_structure(read.values, builder, names, {0.0}, true);
+  add_structure(read, builder, names, {0.0}, true);
   add_interfaces(read, spec, nullptr, builder, names, without);
   const Model model = builder.finish();
   check_static(model, read.values.where());  // a loose body is named as such, not as a mass that cannot be tuned
-  return {tuned_mass(model, names.node(*tuned, "node"), tuned->number("tuned_frequency"), tuned->where("tuned_frequency"))};
+  return {tuned_mass(model, names.node(tuned->node), tuned->tuned_frequency, tuned->where("tuned_frequency"))};
 }
 
 /// The model of a run. `dynamic`: the model without the supports of static stages alone, when that with them is wanted; null: without them.
 Model make_model(const Case& read, const RunSpec& spec, const std::vector<double>& tuned, const Model* dynamic, CaseNames& names,
                  BuiltCase& built) {
   const Values& root = read.values;
-  names.space = space_of(read);
+  names.space = read.input->space;
   ModelBuilder builder(names.space);
-  add_nodes(root, builder, names);
+  add_nodes(*read.input, builder, names);
   add_mesh(read, builder, names);
   names.instead = spec.motion;
   names.motion_factor = spec.motion_factor;
   names.functions_used = &built.functions;
   names.share = newmark_share(built.plan.stages);
   add_functions(read, names);
-  add_structure(root, builder, names, tuned, dynamic != nullptr);
+  add_structure(read, builder, names, tuned, dynamic != nullptr);
   add_ties(root, builder, names);
   add_faces(root, builder, names);
   if (!dynamic)
     add_free_field(root, built.plan.stages, spec.damping ? bulk_damping(*spec.damping) : BulkDamping{}, bulk_solver(read), builder, names);
   add_interfaces(read, spec, dynamic, builder, names, built);
-  add_loads(root, builder, names);
+  add_loads(*read.input, builder, names);
   if (spec.damping) builder.set_damping(bulk_damping(*spec.damping));
   built.beams = names.beams;
   builder.set_home(home_of(*bulk_solver(read)));
@@ -332,11 +332,11 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
   built.plan.stages = stages_of(read, spec);
   check_second_order_water(root);
   move_model(make_model(read, spec, tuned, nullptr, names, built), built.model);
-  const bool released = any_released(root);
+  const bool released = any_released(*read.input);
   const bool rests = std::ranges::any_of(built.plan.stages, [](const Stage& stage) { return stage.type == Stage::Type::statics; });
   if (!released && rests) check_static(built.model, root.where());
   if (dynamic_stage(built.plan)) check_dynamic(built.model, root.where());
-  built.motions = motions_used(root, read.records, spec.motion, spec.motion_factor);
+  built.motions = motions_used(read, spec.motion, spec.motion_factor);
 
   RunPlan& plan = built.plan;
   put_name(spec, plan);
@@ -353,7 +353,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
   if (const Stage* stage = dynamic_stage(plan);
       stage != nullptr && plan.impact->acts() && (!stage->path_average || plan.method->constrains()))
     check_impulses(built.model);
-  add_initial(root, names, built);
+  add_initial(*read.input, names, built);
   find_shown(read, names, built);
   plan.created_limit = root.table("energy").number("created_limit");
   plan.stop_at_limit = root.table("energy").flag("stop_at_limit");

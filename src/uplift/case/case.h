@@ -9,6 +9,7 @@
 
 #include "uplift/base/declare.h"
 #include "uplift/case/build/records.h"
+#include "uplift/case/schema/case_table.h"
 #include "uplift/case/schema/verdict_quantities.h"
 #include "uplift/mesh/split.h"
 #include "uplift/run/run.h"
@@ -16,14 +17,16 @@
 // From the checked case file to something that can be run.
 namespace uplift {
 
-struct CaseMesh;  // case/mesh/mesh.h
+struct CaseMesh;   // case/mesh/mesh.h
+struct CaseInput;  // case/schema/case_input.h
 
-/// A checked case file.
+/// A checked case file. It can be moved; a copy would point into the values of the original.
 struct Case {
-  Values values;                         // of case_section()
-  std::string file;                      // as the user gave it
-  std::shared_ptr<const CaseMesh> mesh;  // opened along the interfaces; null without
-  std::vector<CaseRecord> records;       // in the order of the file
+  Values values;                           // of case_section()
+  std::string file;                        // as the user gave it
+  std::shared_ptr<const CaseMesh> mesh;    // opened along the interfaces; null without
+  std::vector<CaseRecord> records;         // in the order of the file
+  std::shared_ptr<const CaseInput> input;  // the values as structs
 };
 
 /// Reads the mesh of a path; the place names the file, the last text is the mesh to take when there are several.
@@ -130,7 +133,7 @@ struct VerdictRequest {
 /// Where a function of time of a run comes from: change_motion().
 struct FunctionUse {
   std::shared_ptr<const TimeFunction> made;
-  const Values* table = nullptr;   // that names it
+  std::optional<NameUsed> name;    // where it is used; absent: constant
   std::optional<MotionKind> kind;  // the quantity taken of a record, none where no motion can stand
   std::optional<double> factor;    // that it is multiplied by
 };

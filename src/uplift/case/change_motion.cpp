@@ -21,12 +21,12 @@ class NewFunctions {
       use = &each;
     }
     if (use == nullptr) return nullptr;
-    std::shared_ptr<const TimeFunction> made = names_.function(*use->table, use->kind, use->factor);
+    std::shared_ptr<const TimeFunction> made = names_.function(use->name, use->kind, use->factor);
     return made->is_one() ? nullptr : made;
   }
 
  private:
-  static std::string name(const FunctionUse& use) { return use.table->has("function") ? use.table->text("function") : std::string(); }
+  static std::string name(const FunctionUse& use) { return use.name ? use.name->name : std::string(); }
   const BuiltCase& built_;
   const CaseNames& names_;
 };
@@ -60,7 +60,7 @@ bool change_motion(const Case& read, const RunSpec& spec, BuiltCase& built) {
     if (!change(ground.function)) return false;
   for (auto& [old, made] : changes) *old = std::move(made);
   built.functions = std::move(used);
-  built.motions = motions_used(read.values, read.records, spec.motion, spec.motion_factor);
+  built.motions = motions_used(read, spec.motion, spec.motion_factor);
   return true;
 }
 

@@ -8,19 +8,17 @@
 namespace uplift {
 namespace {
 
-int node_if_named(const Values& table, const Model& model) {
-  return table.has("node") ? model.find_node(table.text("node")) : -1;
+int node_if_named(const NodeOrGroup& of, const Model& model) {
+  return of.node ? model.find_node(of.node->name) : -1;
 }
 
-std::string group_if_named(const Values& table) {
-  return table.has("group") ? table.text("group") : std::string();
+std::string group_if_named(const NodeOrGroup& of) {
+  return of.group ? of.group->name : std::string();
 }
 
-std::vector<double> force_of(const Values& load, const Model& model) {
-  for (const char* key : {"force", "traction"})
-    if (load.has(key)) return load.numbers(key);
-  if (!load.has("pressure")) return {};
-  const Vec3 sum = resultant_of_load(load, model);
+std::vector<double> force_of(const CaseLoad& load, const Model& model) {
+  if (!load.force && !load.traction && !load.pressure) return {};
+  const Vec3 sum = load.force ? *load.force : load.traction ? *load.traction : resultant_of_load(load, model);
   return {sum.data(), sum.data() + model.space.dimension};
 }
 
@@ -69,15 +67,17 @@ DrawnParts drawn_parts(const Case& read, const BuiltCase& built) {
   const Values& root = read.values;
   const Model& model = built.model;
   DrawnParts parts;
-  parts.first_of_mesh = static_cast<int>(root.tables("nodes").size());
+  parts.first_of_mesh = static_cast<int>(read.input->nodes.size());
   for (const Values* solid : element_tables(root, ElementPlace::cells)) parts.solids.push_back(solid->text("group"));
-  for (const Values& mass : root.tables("mass"))
-    parts.masses.push_back({model.find_node(mass.text("node")), mass.has("mass") ? mass.number("mass") : built.tuned_mass});
-  for (const Values& support : root.tables("support"))
-    parts.supports.push_back(
-        {node_if_named(support, model), group_if_named(support), support.texts("fixed"), support.text("stages") == "static"});
-  for (const Values& load : root.tables("load"))
-    parts.loads.push_back({name_of_load(load), node_if_named(load, model), group_if_named(load), force_of(load, model)});
+  for (const CaseMass& mass : read.input->masses)
+    parts.masses.push_back({model.find_node(mass.node.name), mass.mass.value_or(built.tuned_mass)});
+  for (const CaseSupport& support : read.input->supports) {
+    std::vector<std::string> fixed;
+    for (const NameUsed& unknown : support.fixed) fixed.push_back(unknown.name);
+    parts.supports.push_back({node_if_named(support.of, model), group_if_named(support.of), std::move(fixed), support.statics_only});
+  }
+  for (const CaseLoad& load : read.input->loads)
+    parts.loads.push_back({load.name, node_if_named(load.of, model), group_if_named(load.of), force_of(load, model)});
   add_links(root, model, parts.links);
   for (const Values& face : root.tables("absorbing"))
     parts.absorbing.push_back({face.text("group"), face.flag("free_field"), face.has("incident")});

@@ -18,7 +18,7 @@ const std::string* text_in(const RawTable& table, std::string_view key) {
 
 /// A record is an acceleration; an acceleration as its factor, "9.81 m/s2", multiplies the earthquake by 9.81. The checked numbers have
 /// lost their units, so that this looks at the file's.
-void check_factors_of_records(const Raw& raw, const Values& values) {
+void check_factors_of_records(const Raw& raw, const Case& read) {
   const auto* root = std::get_if<std::shared_ptr<RawTable>>(&raw.data);
   const Raw* grounds = root != nullptr ? (*root)->find("ground_acceleration") : nullptr;
   const auto* tables = grounds != nullptr ? std::get_if<RawList>(&grounds->data) : nullptr;
@@ -27,29 +27,34 @@ void check_factors_of_records(const Raw& raw, const Values& values) {
     const std::string* amplitude = table != nullptr ? text_in(**table, "amplitude") : nullptr;
     const std::string* function = table != nullptr ? text_in(**table, "function") : nullptr;
     if (amplitude == nullptr || function == nullptr) continue;
-    const bool of_record = std::ranges::any_of(values.tables("record"), [&](const Values& each) { return each.text("name") == *function; });
+    const bool of_record = std::ranges::find(read.records, *function, &CaseRecord::name) != read.records.end();
     const bool has_unit = leading_number(trim(*amplitude)).length < trim(*amplitude).size();
-    const Values& ground = values.tables("ground_acceleration")[i];
-    if (of_record && has_unit && ground.number("amplitude") != 1)
+    const CaseGround& ground = read.input->grounds[i];
+    if (of_record && has_unit && ground.amplitude != 1)
       fail(ground, "amplitude", "a factor without unit: the record " + in_quotes(*function) + " is an acceleration itself",
-           fmt::format("{}, a factor of {:g}", in_quotes(*amplitude), ground.number("amplitude")));
+           fmt::format("{}, a factor of {:g}", in_quotes(*amplitude), ground.amplitude));
   }
+}
+
+void fill_input(const Raw& raw, Case& read) {
+  read.input = std::make_shared<const CaseInput>(case_input(read.values, read.mesh ? &read.mesh->mesh : nullptr));
+  check_factors_of_records(raw, read);
 }
 
 }  // namespace
 
 Case check_case(const Raw& raw, const std::string& file, const MeshReader& read_mesh) {
-  Case read{check(raw, case_section()), file, nullptr, {}};
-  check_factors_of_records(raw, read.values);
+  Case read{check(raw, case_section()), file, nullptr, {}, nullptr};
   read.mesh = mesh_of_case(read.values, file, read_mesh);
   read.records = read_records(read.values);
+  fill_input(raw, read);
   return read;
 }
 
 Case check_case_like(const Case& like, bool same_mesh, const Raw& raw, const MeshReader& read_mesh) {
-  Case read{check(raw, case_section()), like.file, like.mesh, like.records};
-  check_factors_of_records(raw, read.values);
+  Case read{check(raw, case_section()), like.file, like.mesh, like.records, nullptr};
   if (!same_mesh) read.mesh = mesh_of_case(read.values, like.file, read_mesh);
+  fill_input(raw, read);
   return read;
 }
 
@@ -60,10 +65,8 @@ std::vector<std::string> input_files(const Case& read) {
     if (!std::filesystem::is_regular_file(path)) fail(table, "file", "a file", escaped(path.string()));
     files.push_back(path.lexically_normal().string());
   };
-  for (const Values& function : read.values.tables("function")) {
-    const Values& shape = function.part("shape");
-    if (shape.items().contains("file") && shape.has("file")) add(shape);
-  }
+  for (const CaseFunction& function : read.input->functions)
+    if (function.shape->items().contains("file") && function.shape->has("file")) add(*function.shape);
   if (const Values* mesh = table_if(read.values, "mesh"); mesh && mesh->has("file")) add(*mesh);
   for (const Values* solid : element_tables(read.values, ElementPlace::cells))
     for (const char* key : {"law", "plasticity"})

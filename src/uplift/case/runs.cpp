@@ -201,7 +201,7 @@ Comparison comparison_of_case(const Case& read) {
   made.runs = plain;
   if (compare) {
     const std::vector<Values>& motions = compare->tables("motion");
-    for (const Values& motion : motions) check_motion(root, motion);
+    for (const Values& motion : motions) check_motion(read, motion);
     made.runs = with_motions(made.runs, motions);
     made.runs = with_each(made.runs, compare->tables("damping"), "damping case", &RunSpec::damping);
   }

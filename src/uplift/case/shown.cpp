@@ -59,11 +59,11 @@ void find_shown_nodes(const Case& read, const CaseNames& names, BuiltCase& built
       built.top = node;
     }
   };
-  for (const Values& mass : read.values.tables("mass")) look(names.node(mass, "node"), mass.has("mass") ? mass.number("mass") : 0);
-  for (const Values& body : read.values.tables("rigid"))
-    if (!read.mesh && body.number("mass") > 0) look(master_of(body, names), body.number("mass"));
+  for (const CaseMass& mass : read.input->masses) look(names.node(mass.node), mass.mass.value_or(0));
+  for (const CaseBody& body : read.input->bodies)
+    if (!read.mesh && body.mass > 0) look(master_of(body, names), body.mass);
   if (built.top < 0 && !read.mesh)
-    for (const Values& node : read.values.tables("nodes")) look(names.nodes.find(node.key(), node.where(), node.path()), 0);
+    for (const CaseNode& node : read.input->nodes) look(names.nodes.find(node.name, node.where(), node.path()), 0);
   if (!built.facts.empty() && !built.facts[0].body.empty()) built.base = built.model.find_node(built.facts[0].body);
   if (read.mesh) find_shown_mesh_nodes(names, built);
 }

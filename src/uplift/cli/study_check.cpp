@@ -5,6 +5,7 @@
 
 #include "uplift/base/format.h"
 #include "uplift/base/text.h"
+#include "uplift/case/schema/case_input.h"
 #include "uplift/cli/console.h"
 #include "uplift/cli/study.h"
 #include "uplift/ensemble/compute.h"
@@ -39,10 +40,10 @@ std::vector<std::string> warnings_of(const Study& study, const BuiltCase& built,
     if (limit.quantity && !demand_of(limit, trial))
       said.push_back(fmt::format("the limit {}: the first run has no {}{}", in_quotes(limit.name), limit.quantity->name,
                                  limit.of.empty() ? "" : " of " + in_quotes(limit.of)));
-  for (const DrivenBy& place : motions_wanted(read.values))
-    if (place.table->items().contains("amplitude") && place.kind == MotionKind::acceleration && place.table->number("amplitude") != 1)
-      said.push_back(fmt::format("{} multiplies its record by {:g}: the intensities are those of the records",
-                                 place.table->path("amplitude"), place.table->number("amplitude")));
+  for (const CaseGround& ground : read.input->grounds)
+    if (ground.amplitude != 1)
+      said.push_back(fmt::format("{} multiplies its record by {:g}: the intensities are those of the records", ground.path("amplitude"),
+                                 ground.amplitude));
   if (!says_something(trial.outcome))
     said.push_back(fmt::format("the first run ends as \"{}\": {}", to_string(trial.outcome), trial.reason));
   if (study.of.plan.floor_spectra && trial.spectra.empty()) said.emplace_back("floor_spectra: the case has no [[output.floor_spectrum]]");

@@ -26,7 +26,7 @@ namespace {
 /// The record whose intensity is that of the motion; null where a function drives.
 const CaseRecord* measured_record(const StudyCase& study, const Values* table, const Values& place) {
   std::vector<std::string> driving;
-  for (const DrivenBy& each : motions_wanted(study.read.values)) driving.push_back(each.table->text("function"));
+  for (const DrivenBy& each : motions_wanted(study.read)) driving.push_back(each.function.name);
   std::string name = study.plan.intensity.of;
   if (name.empty()) name = table ? table->texts("replace").front() : driving.empty() ? "" : driving.front();
   if (std::ranges::find(driving, name) == driving.end())
@@ -211,7 +211,7 @@ Raw with_reduced_model(const Raw& raw, const Raw& plan) {
 std::string identity_of_case(const Raw& raw, const Case& read) {
   Raw what = edited(raw, {{"title", std::string()}, {"description", std::string()}});
   std::erase_if(std::get<std::shared_ptr<RawTable>>(what.data)->entries, [](const auto& entry) { return entry.first == "trust"; });
-  const Case own{check(what, case_section()), read.file, read.mesh, {}};
+  const Case own = check_case_like(read, true, what);
   std::string text = to_toml(own.values, decided_texts(own)) + "\n";
   for (const std::string& file : input_files(own))
     text += std::filesystem::path(file).filename().string() + " " + sha256(read_file(file)) + "\n";
@@ -241,7 +241,7 @@ StudyCase study_case(const StudyPlan& plan, const Raw& case_raw, const MeshReade
     for (const Values& motion : compare->tables("motion")) {
       names.add(motion, "name");
       if (motion.texts("replace").empty()) fail(motion, "replace", "one name at least", "none");
-      check_motion(root, motion);
+      check_motion(study.read, motion);
       study.motions.push_back(motion_of(study, &motion));
       for (std::size_t k = 0; k + 1 < study.motions.size(); ++k)
         if (study.motions[k].hash == study.motions.back().hash)
@@ -268,7 +268,7 @@ RunSpec run_of_study(const StudyCase& study, const Case& sample, std::size_t mot
 
 std::string resolved_run(const StudyCase& study, std::size_t sample, std::size_t motion, double factor) {
   const Raw changed = edited(study.raw, study.samples[sample].edits);
-  const Raw made = with_one_motion(changed, study.read.values, study.motions[motion].table, factor);
+  const Raw made = with_one_motion(changed, study.read, study.motions[motion].table, factor);
   const Case read = check_case_like(study.read, true, made, study.read_mesh);
   return to_toml(read.values, decided_texts(read));
 }

@@ -10,6 +10,7 @@
 #include "uplift/base/text.h"
 #include "uplift/base/units.h"
 #include "uplift/case/build/records.h"
+#include "uplift/case/schema/case_input.h"
 #include "uplift/study/case_edit.h"
 
 namespace uplift {
@@ -115,7 +116,8 @@ std::string absolute_beside(const Values& table, std::string_view key) {
 }
 
 /// Every path of a file in the case, absolute.
-std::vector<CaseEdit> absolute_files(const Values& root) {
+std::vector<CaseEdit> absolute_files(const Case& read) {
+  const Values& root = read.values;
   std::vector<CaseEdit> edits;
   const auto add = [&](const Values& table, const char* key) {
     if (table.items().contains(key) && table.has(key)) edits.push_back({table.path(key), absolute_beside(table, key)});
@@ -123,7 +125,7 @@ std::vector<CaseEdit> absolute_files(const Values& root) {
   const std::vector<Values>& records = root.tables("record");
   for (std::size_t i = 0; i < records.size(); ++i)  // those of the plan have a path there
     if (records[i].has("file")) edits.push_back({fmt::format("record[{}].file", i), absolute_beside(records[i], "file")});
-  for (const Values& function : root.tables("function")) add(function.part("shape"), "file");
+  for (const CaseFunction& function : read.input->functions) add(*function.shape, "file");
   if (root.has("mesh")) add(root.table("mesh"), "file");
   if (root.has("reduced_model")) edits.push_back({"reduced_model", absolute_beside(root, "reduced_model")});
   return edits;
@@ -131,7 +133,7 @@ std::vector<CaseEdit> absolute_files(const Values& root) {
 
 /// The amplitude of what drives by a function, times the factor.
 CaseEdit louder(const DrivenBy& place, double factor) {
-  const Values& table = *place.table;
+  const Values& table = *place.function.table;
   for (const char* key : {"amplitude", "velocity"}) {
     const auto item = table.items().find(key);
     if (item == table.items().end()) continue;
@@ -161,14 +163,13 @@ Raw with_motions(const Raw& raw, const Values& plan, const Raw& plan_raw) {
   return as_raw(std::move(root), raw);
 }
 
-Raw with_one_motion(const Raw& raw, const Values& root, const Values* motion, double factor) {
-  std::vector<CaseEdit> edits = absolute_files(root);
+Raw with_one_motion(const Raw& raw, const Case& read, const Values* motion, double factor) {
+  std::vector<CaseEdit> edits = absolute_files(read);
   std::set<std::string> drives;
-  for (const DrivenBy& place : motions_wanted(root)) {
-    const std::string& name = name_taken(motion, place.table->text("function"));
-    if (motion != nullptr) edits.push_back({place.table->path("function"), name});
-    const bool is_record = std::ranges::any_of(root.tables("record"), [&](const Values& record) { return record.text("name") == name; });
-    if (is_record)
+  for (const DrivenBy& place : motions_wanted(read)) {
+    const std::string& name = name_taken(motion, place.function.name);
+    if (motion != nullptr) edits.push_back({place.function.path(), name});
+    if (std::ranges::find(read.records, name, &CaseRecord::name) != read.records.end())
       drives.insert(name);
     else if (factor != 1 && !place.rotates)
       edits.push_back(louder(place, factor));
@@ -177,7 +178,7 @@ Raw with_one_motion(const Raw& raw, const Values& root, const Values* motion, do
   std::erase_if(made.entries, [](const auto& entry) { return entry.first == "compare" || entry.first == "variant"; });
   RawList records = list_at(made, "record");
   for (std::size_t i = 0; i < records.size(); ++i) {
-    if (factor == 1 || !drives.contains(root.tables("record")[i].text("name"))) continue;
+    if (factor == 1 || !drives.contains(read.records[i].name)) continue;
     const auto put = [&](auto value) { return Raw{std::move(value), raw.where, "record"}; };
     RawTable scale, step, record = copy_of(records[i]);
     set(scale, "type", put(std::string("scale")));

@@ -1,5 +1,5 @@
 #pragma once
-#include "uplift/base/declare.h"
+#include "uplift/case/case.h"
 
 // Motions of a study as tables of its case.
 namespace uplift {
@@ -9,7 +9,7 @@ namespace uplift {
 Raw with_motions(const Raw& raw, const Values& plan, const Raw& plan_raw);
 
 /// The case under one motion alone, times a factor, as `uplift run` takes it: names are replaced, records get the process "scale", paths
-/// of files are absolute. `root`: the checked case; `motion`: of [[compare.motion]], or null for the case's own.
-Raw with_one_motion(const Raw& raw, const Values& root, const Values* motion, double factor);
+/// of files are absolute. `read`: the checked case; `motion`: of [[compare.motion]], or null for the case's own.
+Raw with_one_motion(const Raw& raw, const Case& read, const Values* motion, double factor);
 
 }  // namespace uplift

@@ -12,7 +12,7 @@ Field quantity(std::string_view name, std::string_view meaning) {
   return field;
 }
 
-const Section& motion_section() {
+const Section& plan_motion_section() {
   static const Section s{
       "motion",
       "a motion of the study: records that take the places of others, one for each component. Without [[motion]] and "
@@ -226,7 +226,7 @@ const Section& study_section() {
            "the case, else the whole model")
            .optional(),
        integer("seed", "of the samples").nonnegative().standard(1), table("intensity", intensity_section(), "measure of the motions"),
-       part("method", study_methods, "which intensities are run"), tables("motion", motion_section(), "motions"),
+       part("method", study_methods, "which intensities are run"), tables("motion", plan_motion_section(), "motions"),
        tables("motions", motions_section(), "motions from files, or generated"),
        tables("record", record_section(), "records beside those of the case"),
        integer("samples", "number of samples of the variables").between(1, 100000).standard(1),

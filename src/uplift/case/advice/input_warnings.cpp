@@ -43,11 +43,10 @@ void warn_cone(const Values& root, Space space, std::vector<std::string>& said) 
   }
 }
 
-void warn_gravity(const Values& root, Space space, std::vector<std::string>& said) {
-  const Values* gravity = table_if(root, "gravity");
-  const double size = gravity != nullptr ? gravity_of(root, space).norm() : 0;
+void warn_gravity(const std::optional<CaseGravity>& gravity, std::vector<std::string>& said) {
+  const double size = gravity ? gravity->acceleration.norm() : 0;
   if (size > 0 && (size < 9 || size > 10.5))
-    said.push_back(place_of(*gravity, "acceleration") +
+    said.push_back(place_of(*gravity->table, "acceleration") +
                    fmt::format("the weight acts with {:g} m/s2, on Earth it is 9.81 m/s2; is the unit right (981 cm/s2)?", size));
 }
 
@@ -86,11 +85,11 @@ void warn_size(const BuiltCase& built, std::vector<std::string>& said) {
 }
 
 /// Names of functions that drive the run.
-std::set<std::string> functions_used(const Values& root, const RunSpec& spec) {
+std::set<std::string> functions_used(const Case& read, const RunSpec& spec) {
   std::set<std::string> names;
-  for (const DrivenBy& place : motions_wanted(root)) names.insert(name_taken(spec.motion, place.table->text("function")));
-  for (const Values& load : root.tables("load"))
-    if (load.has("function")) names.insert(load.text("function"));
+  for (const DrivenBy& place : motions_wanted(read)) names.insert(name_taken(spec.motion, place.function.name));
+  for (const CaseLoad& load : read.input->loads)
+    if (load.function) names.insert(load.function->name);
   return names;
 }
 
@@ -99,18 +98,18 @@ void warn_jumps(const Case& read, const RunSpec& spec, const BuiltCase& built, s
   double end = 0;
   for (const Stage& stage : built.plan.stages)
     if (stage.type == Stage::Type::dynamics) end += stage.duration;
-  const std::set<std::string> used = functions_used(read.values, spec);
-  for (const Values& function : read.values.tables("function")) {
-    if (end == 0 || !used.contains(function.text("name"))) continue;
-    const std::unique_ptr<const TimeFunction> made = make_part(function_catalog(), function.part("shape"));
+  const std::set<std::string> used = functions_used(read, spec);
+  for (const CaseFunction& function : read.input->functions) {
+    if (end == 0 || !used.contains(function.name.name)) continue;
+    const std::unique_ptr<const TimeFunction> made = make_part(function_catalog(), *function.shape);
     for (const FunctionJump& jump : jumps_of(*made))
       if (jump.time > 1e-9 * end && jump.time < end * (1 - 1e-9))
         said.push_back(
-            place_of(function, "name") +
+            place_of(*function.table, function.name.key) +
             fmt::format("the function {} jumps from {:.4g} to {:.4g} at {}, and the run goes on to {}: let it {} with 0, or take "
                         "outside = \"hold\"",
-                        in_quotes(function.text("name")), jump.before, jump.after, format_quantity(jump.time, "s"),
-                        format_quantity(end, "s"), jump.after == 0 ? "end" : "begin"));
+                        in_quotes(function.name.name), jump.before, jump.after, format_quantity(jump.time, "s"), format_quantity(end, "s"),
+                        jump.after == 0 ? "end" : "begin"));
   }
 }
 
@@ -119,7 +118,7 @@ void warn_jumps(const Case& read, const RunSpec& spec, const BuiltCase& built, s
 void warn_input(const Case& read, const RunSpec& spec, const BuiltCase& built, std::vector<std::string>& said) {
   warn_friction(built, said);
   warn_cone(read.values, built.model.space, said);
-  warn_gravity(read.values, built.model.space, said);
+  warn_gravity(read.input->gravity, said);
   warn_damping(read.values, said);
   warn_size(built, said);
   warn_jumps(read, spec, built, said);

@@ -9,6 +9,7 @@
 #include "uplift/base/format.h"
 #include "uplift/case/ground/ground.h"
 #include "uplift/case/mesh/mesh.h"
+#include "uplift/case/schema/case_input.h"
 #include "uplift/laws/macro_element.h"
 
 namespace uplift {
@@ -102,9 +103,8 @@ void warn_settlement(const BuiltCase& built, std::vector<std::string>& said) {
 
 /// A base that nothing but the shaking holds.
 void warn_unloaded(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
-  const Values& root = read.values;
-  const bool shaken = !root.tables("ground_acceleration").empty() || !root.tables("motion").empty();
-  if (!shaken || built.weight != 0 || built.bases() == 0 || !root.tables("load").empty()) return;
+  const bool shaken = !read.input->grounds.empty() || !read.input->motions.empty();
+  if (!shaken || built.weight != 0 || built.bases() == 0 || !read.input->loads.empty()) return;
   const auto opens = [](const Interface& each) {  // see warn_closure for laws with a closure stress
     const LawScales scales = each.law != nullptr ? each.law->scales() : LawScales();
     return scales.opens && scales.strength <= 0 && scales.closure <= 0;

@@ -11,6 +11,7 @@
 #include "uplift/case/advice/step_suggestion.h"
 #include "uplift/case/ground/ground.h"
 #include "uplift/case/mesh/mesh.h"
+#include "uplift/case/schema/case_input.h"
 #include "uplift/mesh/torn.h"
 #include "uplift/model/damping.h"
 #include "uplift/model/hinges.h"
@@ -68,13 +69,15 @@ void warn_massless_beams(const Case& read, std::vector<std::string>& said) {
 /// Static stages apply what is constant, and motions as they are at t = 0.
 void warn_idle_functions(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
   if (!statics_alone(built.plan)) return;
-  for (const char* name : {"load", "ground_acceleration"})
-    for (const Values& table : read.values.tables(name))
-      if (table.has("function"))
-        said.push_back(
-            fmt::format("{}:{}: this [[{}]] has no effect: it has a function of time, and static stages apply constant loads "
-                        "alone; leave the function out, or add a dynamic stage",
-                        table.where().file, table.where().line, name));
+  const auto say = [&](const CaseTable& table, const char* name) {
+    said.push_back(
+        fmt::format("{}:{}: this [[{}]] has no effect: it has a function of time, and static stages apply constant loads "
+                    "alone; leave the function out, or add a dynamic stage",
+                    table.where().file, table.where().line, name));
+  };
+  for (const CaseLoad& load : read.input->loads)
+    if (load.function) say(load, "load");
+  for (const CaseGround& ground : read.input->grounds) say(ground, "ground_acceleration");
   for (const PrescribedMotion& motion : built.model.motions)
     if (motion.function->value(0) == 0)
       said.push_back(
@@ -139,16 +142,15 @@ void warn_sides(const Case& read, std::vector<std::string>& said) {
 void warn_held_faces(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
   const int dimension = built.model.space.dimension;
   for (const Values& face : read.values.tables("absorbing"))
-    for (const Values& support : read.values.tables("support")) {
-      if (!support.has("group") || support.text("group") != face.text("group") || support.text("stages") != "all") continue;
-      const std::vector<std::string>& fixed = support.texts("fixed");
+    for (const CaseSupport& support : read.input->supports) {
+      if (!support.of.group || support.of.name() != face.text("group") || support.statics_only) continue;
       const Values* incident = table_if(face, "incident");
       const Vec3 motion = incident ? incident_motion(*incident, built.model.space) : Vec3::Zero();
       std::string held, stopped;
       int count = 0;
       for (int k = 0; k < dimension; ++k) {
         const std::string unknown = std::array{"ux", "uy", "uz"}[static_cast<std::size_t>(k)];
-        if (std::ranges::find(fixed, unknown) == fixed.end()) continue;
+        if (std::ranges::find(support.fixed, unknown, &NameUsed::name) == support.fixed.end()) continue;
         ++count;
         held += (held.empty() ? "" : ", ") + unknown;
         if (std::abs(motion[k]) > 1e-9) stopped += (stopped.empty() ? "" : ", ") + unknown;
@@ -270,7 +272,7 @@ void warn_method(const Case& read, const RunSpec& spec, const BuiltCase& built, 
 void warn_torn(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
   if (!read.mesh || std::ranges::any_of(read.mesh->cut, [](const auto& faces) { return !faces.empty(); })) return;
   const Mesh& mesh = read.mesh->mesh;
-  const int first = static_cast<int>(read.values.tables("nodes").size());  // those of the mesh follow the nodes of the case
+  const int first = static_cast<int>(read.input->nodes.size());  // those of the mesh follow the nodes of the case
   std::vector<int> joined;
   for (const InterfaceFacts& facts : built.facts)
     for (const std::vector<int>* side : {&facts.upper, &facts.lower})

@@ -45,7 +45,7 @@ class BeamMaking {
 };
 
 std::vector<int> add_between(const ElementEntry& entry, const Values& beam, ModelBuilder& builder, CaseNames& names) {
-  const std::vector<int> ends = names.nodes_of(beam, "nodes");
+  const std::vector<int> ends = names.nodes_of(names_used(beam, "nodes"));
   if (ends.size() != 2) fail(beam, "nodes", "two nodes", fmt::format("{}", ends.size()));
   const Vec3 along = names.positions[static_cast<std::size_t>(ends[1])] - names.positions[static_cast<std::size_t>(ends[0])];
   if (along.norm() == 0) fail(beam, "nodes", "two nodes at different places", "two nodes at the same place");
@@ -78,7 +78,7 @@ void add_beams(const Values& root, ModelBuilder& builder, CaseNames& names) {
       beams.add(beam, "name");
       const int first = builder.num_elements();
       const bool between = first_of_two(beam, "nodes", "group");
-      if (!between) names.mesh_for(beam);
+      if (!between) names.mesh_for(name_used(beam, "group"));
       std::vector<std::vector<int>> lines;
       if (between)
         lines.push_back(add_between(*entry, beam, builder, names));

@@ -273,7 +273,7 @@ Request force_request(const Values& history, const BuiltCase& built, const CaseN
   if (history.has("level")) return storey_shear(history, built);
   if (history.has("below")) return drift(history, built, node);
   if (node >= 0) return constraint_force(history, built, {node}, built.model.nodes[static_cast<std::size_t>(node)].name);
-  return constraint_force(history, built, names.node_or_group(history), history.text("group"));
+  return constraint_force(history, built, names.nodes_of(node_or_group(history)), history.text("group"));
 }
 
 void add_envelopes(const Values& output, BuiltCase& built) {

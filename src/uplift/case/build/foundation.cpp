@@ -52,11 +52,11 @@ std::unique_ptr<const Element> radiation_dashpot(const Values& foundation, const
   const Vec3 about = plane ? Vec3(0, 0, damping[2]) : Vec3(damping[3], damping[4], damping[5]);
   Vec3 offset = Vec3::Zero();
   if (foundation.has("offset")) offset = vector_of(foundation, "offset", space);
-  return std::make_unique<PointDashpot>(space, names.node(foundation, "body"), along, about, offset);
+  return std::make_unique<PointDashpot>(space, names.node(name_used(foundation, "body")), along, about, offset);
 }
 
 Joint foundation_joint(const Values& foundation, const Footprint& footprint, const CaseNames& names) {
-  const int body = names.node(foundation, "body");
+  const int body = names.node(name_used(foundation, "body"));
   const Space space = names.space;
   JointPoint point;
   point.position = names.positions[static_cast<std::size_t>(body)];

@@ -52,7 +52,7 @@ void set_gaps(const Values& interface, std::vector<JointPoint>& points, const Ca
   const Profile profile(*table, "gaps", names.space);
   std::vector<Vec3> places;
   for (const JointPoint& point : points) places.push_back(point.position);
-  profile.require_overlap(*table, places);
+  profile.require_overlap(places);
   for (JointPoint& point : points) point.gap += profile.at(point.position);
 }
 

@@ -22,7 +22,7 @@ double uniform_gap(const Values& interface) {
 
 std::vector<SideNode> side(const Values& table, std::string_view key, const CaseNames& names) {
   std::vector<SideNode> nodes;
-  for (const int node : names.nodes_of(table, key)) nodes.push_back({node, names.positions[node]});
+  for (const int node : names.nodes_of(names_used(table, key))) nodes.push_back({node, names.positions[node]});
   return nodes;
 }
 
@@ -58,7 +58,7 @@ void add_bed(const Values& bed, const std::string& interface, std::vector<JointP
 
 Joint footing_joint(const Values& interface, const Values& table, bool rigid_ground, ModelBuilder& builder, CaseNames& names) {
   Footing footing;
-  footing.body = names.node(table, "body");
+  footing.body = names.node(name_used(table, "body"));
   footing.centre = names.positions[footing.body];
   if (table.has("offset")) footing.centre += vector_of(table, "offset", names.space);
   footing.normal = normal_of(table, names.space);

@@ -20,33 +20,18 @@ void add_force(int node, const Vec3& force, bool moment, Space space, Pattern& p
       pattern.emplace_back(space.unknowns() * node + i, value);
 }
 
-Pattern node_load(const Values& load, int node, Space space) {
-  for (const char* key : {"traction", "pressure", "profile"})
-    if (load.has(key)) fail(load, key, "force or moment on a node", key);
-  if (!load.has("force") && !load.has("moment") && !load.has("moments")) fail(load, "", "force or moment", "neither");
+Pattern node_load(const CaseLoad& load, int node, Space space) {
   Pattern pattern;
-  if (load.has("force")) add_force(node, vector_of(load, "force", space), false, space, pattern);
-  add_force(node, about_axes(load, "moment", "moments", false, space), true, space, pattern);
+  if (load.force) add_force(node, *load.force, false, space, pattern);
+  add_force(node, load.moment, true, space, pattern);
   return pattern;
 }
 
-/// Exactly one of these keys must be given.
-const char* one_of(const Values& load, std::initializer_list<const char*> keys) {
-  const char* found = nullptr;
-  for (const char* key : keys) {
-    if (!load.has(key)) continue;
-    if (found != nullptr) fail(load, key, fmt::format("only one of {}", fmt::join(keys, ", ")), fmt::format("{} and {}", found, key));
-    found = key;
-  }
-  if (found == nullptr) fail(load, "", fmt::format("one of {} on a group", fmt::join(keys, ", ")), "none");
-  return found;
-}
-
 /// The faces of a pressure must bound one solid: elsewhere no side is the outer one.
-void check_outer(const Values& load, const CaseSolids& solids, const std::vector<CellId>& faces) {
+void check_outer(const NameUsed& group, const CaseSolids& solids, const std::vector<CellId>& faces) {
   for (const CellId face : faces)
     if (solids.outward_nodes(face).empty())
-      fail(load, "group", solids.mesh().dimension == 2 ? "edges on the surface of a solid" : "faces on the surface of a solid",
+      fail(group, solids.mesh().dimension == 2 ? "edges on the surface of a solid" : "faces on the surface of a solid",
            describe_cell(solids.mesh(), face) + " between two cells");
 }
 
@@ -60,32 +45,25 @@ std::vector<Vec3> places_of(const Mesh& mesh, const std::vector<CellId>& faces, 
 }
 
 /// Consistent forces of a pressure, a traction or an evenly spread force on edges or faces of the mesh.
-Pattern surface_load(const Values& load, const CaseNames& names) {
-  for (const char* key : {"moment", "moments"})
-    if (load.has(key)) fail(load, key, "pressure, traction or force on a group", "a moment");
-  const std::string key = one_of(load, {"pressure", "traction", "force"});
-  const CaseSolids& solids = names.mesh_for(load);
-  const std::vector<FreeFace>* free = solids.free_surface(load.text("group"));
-  const std::vector<CellId> faces = free ? std::vector<CellId>{} : solids.edges(load, "group");
-  const Values* table = table_if(load, "profile");
-  if (table && key == "force") fail(*table, "", "profile with pressure or traction", "profile with force");
-  std::optional<Profile> profile;
-  if (table) {
-    profile.emplace(*table, "factors", names.space);
-    profile->require_overlap(*table, places_of(solids.mesh(), faces, free));
-  }
+Pattern surface_load(const CaseLoad& load, const CaseNames& names) {
+  const NameUsed& group = *load.of.group;
+  const CaseSolids& solids = names.mesh_for(group);
+  const std::vector<FreeFace>* free = solids.free_surface(group.name);
+  const std::vector<CellId> faces = free ? std::vector<CellId>{} : solids.edges(group);
+  const std::optional<Profile>& profile = load.profile;
+  if (profile) profile->require_overlap(places_of(solids.mesh(), faces, free));
   const auto shares = [&] {
     const Profile* factor = profile ? &*profile : nullptr;
     return free ? surface_shares(solids, *free, factor) : surface_shares(solids, faces, factor);
   };
   Pattern pattern;
-  if (key == "pressure") {
-    check_outer(load, solids, faces);
+  if (load.pressure) {
+    check_outer(group, solids, faces);
     for (const SurfaceShare& share : shares())
-      add_force(names.first_of_mesh + share.node, -load.number("pressure") * share.outward, false, names.space, pattern);
+      add_force(names.first_of_mesh + share.node, -*load.pressure * share.outward, false, names.space, pattern);
     return pattern;
   }
-  Vec3 per_area = vector_of(load, key, names.space);
+  Vec3 per_area = load.force ? *load.force : *load.traction;
   if (profile) {
     for (const SurfaceShare& share : shares())
       add_force(names.first_of_mesh + share.node, share.area * per_area, false, names.space, pattern);
@@ -98,20 +76,16 @@ Pattern surface_load(const Values& load, const CaseNames& names) {
     areas = tributary_areas(solids, faces);
   double area = 0;
   for (const auto& [node, share] : areas) area += share;
-  if (key == "force") per_area /= area;
+  if (load.force) per_area /= area;
   for (const auto& [node, share] : areas) add_force(names.first_of_mesh + node, share * per_area, false, names.space, pattern);
   return pattern;
 }
 
 }  // namespace
 
-std::string name_of_load(const Values& load) {
-  return load.has("name") ? load.text("name") : "load on " + load.text(load.has("node") ? "node" : "group");
-}
-
-Vec3 resultant_of_load(const Values& load, const Model& model) {
+Vec3 resultant_of_load(const CaseLoad& load, const Model& model) {
   Vec3 sum = Vec3::Zero();
-  const auto time_load = std::ranges::find(model.time_loads, name_of_load(load), &TimeLoad::name);
+  const auto time_load = std::ranges::find(model.time_loads, load.name, &TimeLoad::name);
   if (time_load == model.time_loads.end()) return sum;
   const Vector& pattern = model.assembly.loads[static_cast<std::size_t>(time_load - model.time_loads.begin())];
   for (Index i = 0; i < pattern.size(); ++i)
@@ -119,35 +93,15 @@ Vec3 resultant_of_load(const Values& load, const Model& model) {
   return sum;
 }
 
-Vec3 gravity_of(const Values& root, Space space) {
-  const Values* gravity = table_if(root, "gravity");
-  if (gravity == nullptr) return Vec3::Zero();
-  if (gravity->has("acceleration")) return vector_of(*gravity, "acceleration", space);
-  return -9.81 * space.axis(space.up());
-}
-
-/// A direction alone: its length would be a factor on the earthquake that nobody has asked for.
-Vec3 direction_of_ground(const Values& ground, Space space) {
-  constexpr double rounded = 0.01;  // [0.71, 0.71]
-  if (!ground.has("direction")) return space.axis(0);
-  const Vec3 direction = vector_of(ground, "direction", space);
-  if (const double length = direction.norm(); std::abs(length - 1) > rounded)
-    fail(ground, "direction", "a direction of length 1 (the amplitude is the factor)", fmt::format("one of length {:.4g}", length));
-  return direction;
-}
-
-void add_loads(const Values& root, ModelBuilder& builder, const CaseNames& names) {
-  for (const Values& load : root.tables("load")) {
-    std::vector<std::pair<int, double>> pattern =
-        first_of_two(load, "node", "group") ? node_load(load, names.node(load, "node"), names.space) : surface_load(load, names);
-    builder.add_load(name_of_load(load), std::move(pattern), names.function(load), !load.has("function"), load.where());
+void add_loads(const CaseInput& input, ModelBuilder& builder, const CaseNames& names) {
+  for (const CaseLoad& load : input.loads) {
+    Pattern pattern = load.of.node ? node_load(load, names.node(*load.of.node), names.space) : surface_load(load, names);
+    builder.add_load(load.name, std::move(pattern), names.function(load.function), !load.function, load.where());
   }
-  if (const Values* gravity = table_if(root, "gravity")) builder.set_gravity(gravity_of(root, names.space), gravity->where());
-  for (const Values& ground : root.tables("ground_acceleration")) {
-    const std::string name = ground.has("name") ? ground.text("name") : "ground acceleration";
-    builder.add_ground_acceleration(direction_of_ground(ground, names.space),
-                                    names.function(ground, MotionKind::acceleration, ground.number("amplitude")), name, ground.where());
-  }
+  if (input.gravity) builder.set_gravity(input.gravity->acceleration, input.gravity->where());
+  for (const CaseGround& ground : input.grounds)
+    builder.add_ground_acceleration(ground.direction, names.function(ground.function, MotionKind::acceleration, ground.amplitude),
+                                    ground.name, ground.where());
 }
 
 }  // namespace uplift

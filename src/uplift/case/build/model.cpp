@@ -13,32 +13,21 @@
 
 namespace uplift {
 
-Space space_of(const Case& read) {
-  if (read.mesh) return {read.mesh->mesh.dimension};
-  const std::vector<Values>& nodes = read.values.tables("nodes");
-  return {nodes.empty() ? 2 : static_cast<int>(nodes.front().numbers("value").size())};
-}
-
-const Values* table_if(const Values& values, std::string_view key) {
-  return values.has(key) ? &values.table(key) : nullptr;
-}
-
-std::vector<int> CaseNames::nodes_of(const Values& table, std::string_view key) const {
-  std::vector<int> found;
-  if (!table.has(key)) return found;
-  for (const std::string& name : table.texts(key))
-    found.push_back(standing(nodes.find(name, table.where(key), table.path(key)), table, key));
-  return found;
-}
-
-int CaseNames::standing(int node, const Values& table, std::string_view key) const {
+int CaseNames::node(const NameUsed& name) const {
+  const int node = nodes.find(name);
   if (bare.contains(node))
-    fail(table, key, "a node of what is filled", in_quotes(nodes[node]) + ", around which the planes of interface.cut leave nothing");
+    fail(name, "a node of what is filled", in_quotes(nodes[node]) + ", around which the planes of interface.cut leave nothing");
   return node;
 }
 
-const CaseSolids& CaseNames::mesh_for(const Values& table) const {
-  if (!solids) fail(table, "group", "a [mesh] with this group", "none");
+std::vector<int> CaseNames::nodes_of(const std::vector<NameUsed>& used) const {
+  std::vector<int> found;
+  for (const NameUsed& name : used) found.push_back(node(name));
+  return found;
+}
+
+const CaseSolids& CaseNames::mesh_for(const NameUsed& group) const {
+  if (!solids) fail(group, "a [mesh] with this group", "none");
   return *solids;
 }
 
@@ -48,11 +37,9 @@ std::vector<int> CaseNames::nodes_of_cell(CellId cell) const {
   return found;
 }
 
-std::vector<int> CaseNames::node_or_group(const Values& table) const {
-  const bool node_given = table.has("node");
-  if (node_given == table.has("group")) fail(table, node_given ? "group" : "", "either node or group", node_given ? "both" : "neither");
-  if (node_given) return {node(table, "node")};
-  std::vector<int> found = mesh_for(table).nodes(table, "group");
+std::vector<int> CaseNames::nodes_of(const NodeOrGroup& of) const {
+  if (of.node) return {node(*of.node)};
+  std::vector<int> found = mesh_for(*of.group).nodes(*of.group);
   for (int& each : found) each += first_of_mesh;
   return found;
 }
@@ -72,30 +59,29 @@ class Scaled final : public TimeFunction {
   std::shared_ptr<const TimeFunction> function_;
 };
 
-void add_masses(const Values& root, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned) {
+void add_masses(const CaseInput& input, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned) {
   std::size_t next = 0;
-  for (const Values& mass : root.tables("mass")) {
-    const int node = names.node(mass, "node");
-    const double value = first_of_two(mass, "mass", "tuned_frequency") ? mass.number("mass") : tuned.at(next++);
-    builder.add_element(std::make_unique<PointMass>(names.space, node, value, about_axes(mass, "inertia", "inertias", true, names.space)),
-                        mass.where());
+  for (const CaseMass& mass : input.masses) {
+    const int node = names.node(mass.node);
+    const double value = mass.mass ? *mass.mass : tuned.at(next++);
+    builder.add_element(std::make_unique<PointMass>(names.space, node, value, mass.inertia), mass.where());
   }
   Names bodies("rigid body");
-  for (const Values& body : root.tables("rigid")) {
-    if (body.has("name")) bodies.add(body, "name");
+  for (const CaseBody& body : input.bodies) {
+    if (body.name) bodies.add(*body.name);
     const int master = master_of(body, names);
-    for (const int slave : names.nodes_of(body, "slaves")) {
-      if (slave == master) fail(body, "slaves", "nodes other than the master", "\"" + names.nodes[master] + "\"");
-      builder.tie_rigid(master, slave, body.where("slaves"));
+    for (const NameUsed& name : body.slaves) {
+      const int slave = names.node(name);
+      if (slave == master) fail(name, "nodes other than the master", "\"" + names.nodes[master] + "\"");
+      builder.tie_rigid(master, slave, name.where());
     }
-    if (body.has("group"))
-      for (const int node : names.mesh_for(body).nodes(body, "group"))
-        if (names.first_of_mesh + node != master) builder.tie_rigid(master, names.first_of_mesh + node, body.where("group"));
+    if (body.group)
+      for (const int node : names.mesh_for(*body.group).nodes(*body.group))
+        if (names.first_of_mesh + node != master) builder.tie_rigid(master, names.first_of_mesh + node, body.group->where());
     Place offset;
-    if (body.has("centre")) offset = vector_of(body, "centre", names.space) - names.positions[master];
-    const Vec3 inertia = about_axes(body, "inertia", "inertias", true, names.space);
-    if (body.number("mass") > 0 || !inertia.isZero(0))
-      builder.add_element(std::make_unique<PointMass>(names.space, master, body.number("mass"), inertia, offset), body.where());
+    if (body.centre) offset = *body.centre - names.positions[master];
+    if (body.mass > 0 || !body.inertia.isZero(0))
+      builder.add_element(std::make_unique<PointMass>(names.space, master, body.mass, body.inertia, offset), body.where());
   }
 }
 
@@ -103,7 +89,7 @@ void add_masses(const Values& root, ModelBuilder& builder, CaseNames& names, con
 void add_elements(const Values& root, ModelBuilder& builder, const CaseNames& names) {
   for (const ElementEntry* entry : elements_at(ElementPlace::nodes))
     for (const Values& table : root.tables(entry->name)) {
-      ElementSite site{names.space, names.nodes_of(table, "nodes"), {}};
+      ElementSite site{names.space, names.nodes_of(names_used(table, "nodes")), {}};
       for (const int node : site.nodes) site.positions.push_back(names.positions[static_cast<std::size_t>(node)]);
       builder.add_element(entry->make(site, table), table.where());
     }
@@ -111,60 +97,50 @@ void add_elements(const Values& root, ModelBuilder& builder, const CaseNames& na
 
 }  // namespace
 
-int master_of(const Values& body, const CaseNames& names) {
-  if (body.has("node")) return names.node(body, "node");
-  if (!body.has("group")) fail(body, "", "node, or a group of the mesh", "neither");
-  std::vector<int> nodes = names.mesh_for(body).nodes(body, "group");
+int master_of(const CaseBody& body, const CaseNames& names) {
+  if (body.node) return names.node(*body.node);
+  if (!body.group) fail(body, "", "node, or a group of the mesh", "neither");
+  std::vector<int> nodes = names.mesh_for(*body.group).nodes(*body.group);
   const auto position = [&](int node) -> const Place& { return names.positions[static_cast<std::size_t>(names.first_of_mesh + node)]; };
   Vec3 middle = Vec3::Zero();
   for (const int node : nodes) middle += position(node) / static_cast<double>(nodes.size());
   return names.first_of_mesh + *std::ranges::min_element(nodes, {}, [&](int node) { return (position(node) - middle).norm(); });
 }
 
-Vec3 about_axes(const Values& table, std::string_view single, std::string_view plural, bool everywhere, Space space) {
-  if (table.has(plural)) {
-    if (space.dimension == 2) fail(table, plural, fmt::format("{} in a plane model", single), "three numbers");
-    if (table.has(single) && table.number(single) != 0) fail(table, single, fmt::format("either {} or {}", single, plural), "both");
-    const std::vector<double>& numbers = table.numbers(plural);
-    return {numbers[0], numbers[1], numbers[2]};
-  }
-  const double value = table.has(single) ? table.number(single) : 0;
-  return everywhere && space.dimension == 3 ? Vec3(value, value, value) : Vec3(0, 0, value);
-}
-
 std::shared_ptr<const TimeFunction> scaled(double factor, std::shared_ptr<const TimeFunction> function) {
   return std::make_shared<Scaled>(factor, std::move(function));
 }
 
-bool CaseNames::is_record(const Values& table) const {
-  if (!table.has("function")) return false;
-  const std::string& name = name_taken(instead, table.text("function"));
-  return functions_made[static_cast<std::size_t>(functions.find(name, table.where("function"), table.path("function")))] == nullptr;
+int CaseNames::index_taken(const NameUsed& function) const {
+  return functions.find(name_taken(instead, function.name), function.where(), function.path());
 }
 
-std::shared_ptr<const TimeFunction> CaseNames::function(const Values& table, std::optional<MotionKind> kind,
+bool CaseNames::is_record(const std::optional<NameUsed>& function) const {
+  return function && functions_made[static_cast<std::size_t>(index_taken(*function))] == nullptr;
+}
+
+std::shared_ptr<const TimeFunction> CaseNames::function(const std::optional<NameUsed>& name, std::optional<MotionKind> kind,
                                                         std::optional<double> factor) const {
-  std::shared_ptr<const TimeFunction> made = make_function(table, kind);
+  std::shared_ptr<const TimeFunction> made = make_function(name, kind);
   if (factor) made = scaled(*factor, std::move(made));
-  if (functions_used) functions_used->push_back({made, &table, kind, factor});
+  if (functions_used) functions_used->push_back({made, name, kind, factor});
   return made;
 }
 
-std::shared_ptr<const TimeFunction> CaseNames::make_function(const Values& table, std::optional<MotionKind> kind) const {
-  if (!table.has("function")) return std::make_shared<One>();
-  const std::string& name = name_taken(instead, table.text("function"));
-  const auto found = static_cast<std::size_t>(functions.find(name, table.where("function"), table.path("function")));
+std::shared_ptr<const TimeFunction> CaseNames::make_function(const std::optional<NameUsed>& name, std::optional<MotionKind> kind) const {
+  if (!name) return std::make_shared<One>();
+  const auto found = static_cast<std::size_t>(index_taken(*name));
   if (functions_made[found]) return kind && motion_factor != 1 ? scaled(motion_factor, functions_made[found]) : functions_made[found];
   const CaseRecord& record = (*records)[found - (functions_made.size() - records->size())];
-  if (!kind) fail(table, "function", "a function (a record is a motion: no load, no rotation)", "the record " + in_quotes(name));
+  if (!kind) fail(*name, "a function (a record is a motion: no load, no rotation)", "the record " + in_quotes(record.name));
   return std::make_shared<MotionFunction>(giving(scaled(record.history, motion_factor), *kind), *kind, share);
 }
 
-void add_nodes(const Values& root, ModelBuilder& builder, CaseNames& names) {
-  for (const Values& node : root.tables("nodes")) {
-    names.nodes.add(node.key(), node.where(), node.path());
-    names.positions.push_back(vector_of(node, "value", names.space));
-    builder.add_node(node.key(), names.positions.back(), node.where());
+void add_nodes(const CaseInput& input, ModelBuilder& builder, CaseNames& names) {
+  for (const CaseNode& node : input.nodes) {
+    names.nodes.add(node.name, node.where(), node.path());
+    names.positions.push_back(node.position);
+    builder.add_node(node.name, node.position, node.where());
   }
 }
 
@@ -232,9 +208,9 @@ void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
 
 void add_functions(const Case& read, CaseNames& names) {
   if (!read.records.empty()) names.functions = Names("function or record");
-  for (const Values& function : read.values.tables("function")) {
-    names.functions.add(function, "name");
-    names.functions_made.push_back(make_part(function_catalog(), function.part("shape")));
+  for (const CaseFunction& function : read.input->functions) {
+    names.functions.add(function.name);
+    names.functions_made.push_back(make_part(function_catalog(), *function.shape));
   }
   for (const Values& record : read.values.tables("record")) {
     names.functions.add(record, "name");
@@ -243,11 +219,11 @@ void add_functions(const Case& read, CaseNames& names) {
   names.records = &read.records;
 }
 
-void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned, bool at_rest) {
-  add_beams(root, builder, names);
-  add_masses(root, builder, names, tuned);
-  add_elements(root, builder, names);
-  add_supports(root, builder, names, at_rest);
+void add_structure(const Case& read, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned, bool at_rest) {
+  add_beams(read.values, builder, names);
+  add_masses(*read.input, builder, names, tuned);
+  add_elements(read.values, builder, names);
+  add_supports(read, builder, names, at_rest);
 }
 
 BulkDamping bulk_damping(const Values& damping) {

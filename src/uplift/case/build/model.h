@@ -8,6 +8,7 @@
 #include "uplift/case/build/names.h"
 #include "uplift/case/case.h"
 #include "uplift/case/mesh/mesh.h"
+#include "uplift/case/schema/case_input.h"
 #include "uplift/elements/element_entry.h"
 #include "uplift/model/builder.h"
 
@@ -24,8 +25,8 @@ struct CaseNames {
   const Values* instead = nullptr;                     // [[compare.motion]] of the run; null: as in the case
   double motion_factor = 1;                            // see RunSpec
   std::vector<FunctionUse>* functions_used = nullptr;  // the functions that are given out; null: they are not wanted
-  /// Whether the function of a table is a record, which has a unit.
-  bool is_record(const Values& table) const;
+  /// Whether a function is a record, which has a unit.
+  bool is_record(const std::optional<NameUsed>& function) const;
   double share = 0;                          // of the displacements of records, see MotionFunction
   std::shared_ptr<const CaseSolids> solids;  // null without a mesh
   int first_of_mesh = 0;                     // node of the model that the mesh's first node is
@@ -33,44 +34,33 @@ struct CaseNames {
   std::vector<BeamLine> beams;               // met so far
   std::set<int> bare;                        // nodes that stand outside of what their cut cells fill
   /// A node that is named; InputError where nothing stands at it.
-  int node(const Values& table, std::string_view key) const { return standing(nodes.find(table, key), table, key); }
-  std::vector<int> nodes_of(const Values& table, std::string_view key) const;
-  int standing(int node, const Values& table, std::string_view key) const;
+  int node(const NameUsed& name) const;
+  std::vector<int> nodes_of(const std::vector<NameUsed>& used) const;
   /// Nodes of the model of a cell of the mesh, which there is.
   std::vector<int> nodes_of_cell(CellId cell) const;
-  /// The node of "node" or the nodes of "group": exactly one of the keys must be given.
-  std::vector<int> node_or_group(const Values& table) const;
-  /// The mesh that "group" speaks of; InputError without one.
-  const CaseSolids& mesh_for(const Values& table) const;
+  std::vector<int> nodes_of(const NodeOrGroup& of) const;
+  /// The mesh that this group is of; InputError without one.
+  const CaseSolids& mesh_for(const NameUsed& group) const;
   /// What drives something; absent: constant 1. `kind`: the quantity taken of a record, none where no motion can stand. `factor`: of
   /// the function.
-  std::shared_ptr<const TimeFunction> function(const Values& table, std::optional<MotionKind> kind = {},
+  std::shared_ptr<const TimeFunction> function(const std::optional<NameUsed>& name, std::optional<MotionKind> kind = {},
                                                std::optional<double> factor = {}) const;
 
  private:
-  std::shared_ptr<const TimeFunction> make_function(const Values& table, std::optional<MotionKind> kind) const;
+  std::shared_ptr<const TimeFunction> make_function(const std::optional<NameUsed>& name, std::optional<MotionKind> kind) const;
+  int index_taken(const NameUsed& function) const;
 };
 
-/// Something about the three axes: `plural` in space, else `single`, which is about z, or with `everywhere` about all axes of space. Zero
-/// when neither is there.
-Vec3 about_axes(const Values& table, std::string_view single, std::string_view plural, bool everywhere, Space space);
-/// Plane or space: as the mesh, else as the first node.
-Space space_of(const Case& read);
-/// A table that may be absent: null then.
-const Values* table_if(const Values& values, std::string_view key);
-
 /// Nodes, functions, elements, supports, motions, loads and damping. `tuned` is the mass of the tuned point masses [kg], one per such mass.
-void add_nodes(const Values& root, ModelBuilder& builder, CaseNames& names);
+void add_nodes(const CaseInput& input, ModelBuilder& builder, CaseNames& names);
 /// Nodes and solids of the mesh.
 void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names);
 /// Elements on faces of the mesh, and the waves that come in through absorbing ones; after the functions.
 void add_faces(const Values& root, ModelBuilder& builder, const CaseNames& names);
 /// A function times an amplitude.
 std::shared_ptr<const TimeFunction> scaled(double factor, std::shared_ptr<const TimeFunction> function);
-/// As stated, else from what it acts on.
-std::string name_of_load(const Values& load);
 /// The force [N] that a load puts on the whole model when its function is 1.
-Vec3 resultant_of_load(const Values& load, const Model& model);
+Vec3 resultant_of_load(const CaseLoad& load, const Model& model);
 /// Functions, then records.
 void add_functions(const Case& read, CaseNames& names);
 /// Nodes of beams: those of the mesh that have rotations.
@@ -78,18 +68,16 @@ std::set<int> beam_nodes(const CaseNames& names);
 /// Beams between nodes and along groups of the mesh.
 void add_beams(const Values& root, ModelBuilder& builder, CaseNames& names);
 /// The master node of a rigid body: as named, else the node of its group that is nearest to the group's middle.
-int master_of(const Values& body, const CaseNames& names);
+int master_of(const CaseBody& body, const CaseNames& names);
 /// `at_rest`: with the supports that hold in static stages alone.
-void add_structure(const Values& root, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned, bool at_rest);
+void add_structure(const Case& read, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned, bool at_rest);
 /// Supports and prescribed motions. Groups of two sides share the corner: it is held once, and moves where one of them moves.
-void add_supports(const Values& root, ModelBuilder& builder, const CaseNames& names, bool at_rest);
+void add_supports(const Case& read, ModelBuilder& builder, const CaseNames& names, bool at_rest);
 /// Whether supports hold in static stages alone.
-bool any_released(const Values& root);
-/// Acceleration of the weight [m/s2]; zero without gravity.
-Vec3 gravity_of(const Values& root, Space space);
-void add_loads(const Values& root, ModelBuilder& builder, const CaseNames& names);
+bool any_released(const CaseInput& input);
+void add_loads(const CaseInput& input, ModelBuilder& builder, const CaseNames& names);
 /// Initial displacements and velocities of the free unknowns; after the model is made.
-void add_initial(const Values& root, const CaseNames& names, BuiltCase& built);
+void add_initial(const CaseInput& input, const CaseNames& names, BuiltCase& built);
 BulkDamping bulk_damping(const Values& damping);
 
 /// Joint points of an interface with its lower nodes; with an elastic bed (unless `rigid_ground`) these are made here.

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "uplift/base/declare.h"
+#include "uplift/case/schema/case_table.h"
 
 namespace uplift {
 
@@ -21,6 +21,7 @@ class Names {
   /// Adds the name under a key of a table, or `automatic` when the key is absent. Returns its index. Throws InputError when it is used
   /// already.
   int add(const Values& table, std::string_view key, std::string automatic = {});
+  int add(const NameUsed& name) { return add(name.name, name.where(), name.path()); }
   /// Adds a name that the program made at this place.
   int add(std::string name, const Where& where, const std::string& path);
   /// A second name of something that was added; it must not be there yet.
@@ -29,6 +30,7 @@ class Names {
   bool has(const std::string& name) const { return index_.contains(name); }
   /// Index of a name used at this place; InputError with the nearest name when it does not exist.
   int find(const std::string& name, const Where& where, const std::string& path) const;
+  int find(const NameUsed& name) const { return find(name.name, name.where(), name.path()); }
   int find(const Values& table, std::string_view key) const { return find(table.text(key), table.where(key), table.path(key)); }
   const std::string& operator[](int index) const { return names_[index].first; }
   int size() const { return static_cast<int>(names_.size()); }

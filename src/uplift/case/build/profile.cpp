@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "uplift/case/build/model.h"
+#include "uplift/elements/element_entry.h"
 
 namespace uplift {
 namespace {
@@ -32,7 +32,7 @@ const Section& gap_profile_section() {
   return s;
 }
 
-Profile::Profile(const Values& table, std::string_view values, Space space) {
+Profile::Profile(const Values& table, std::string_view values, Space space) : table_(&table) {
   const std::string& along = table.text("along");
   const bool distance = along == "distance";
   if (distance != table.has("centre"))
@@ -59,13 +59,13 @@ double Profile::at(const Vec3& position) const {
   return (1 - share) * values_[i - 1] + share * values_[i];
 }
 
-void Profile::require_overlap(const Values& table, const std::vector<Vec3>& places) const {
+void Profile::require_overlap(const std::vector<Vec3>& places) const {
   const auto [nearest, farthest] = std::ranges::minmax(places, {}, [&](const Vec3& place) { return coordinate(place); });
   const double from = axis_ < 0 ? 0 : coordinate(nearest), to = coordinate(farthest);  // the distance may be least inside a face
   const double margin = 1e-6 * (to - from);
   if (positions_.front() <= to + margin && positions_.back() >= from - margin) return;
   const std::string along = axis_ < 0 ? "at distances" : fmt::format("from {} =", static_cast<char>('x' + axis_));
-  fail(table, "positions", fmt::format("positions that reach the surface, which lies {} {:.4g} to {:.4g} m", along, from, to),
+  fail(*table_, "positions", fmt::format("positions that reach the surface, which lies {} {:.4g} to {:.4g} m", along, from, to),
        fmt::format("{:.4g} to {:.4g} m", positions_.front(), positions_.back()));
 }
 

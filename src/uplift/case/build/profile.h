@@ -13,13 +13,14 @@ class Profile {
   /// `values`: the key of the values in the table. Throws InputError.
   Profile(const Values& table, std::string_view values, Space space);
   double at(const Vec3& position) const;
-  /// Throws InputError (at `table`, the profile's) when all positions lie on one side of these places: the profile would do nothing.
-  void require_overlap(const Values& table, const std::vector<Vec3>& places) const;
+  /// Throws InputError when all positions lie on one side of these places: the profile would do nothing.
+  void require_overlap(const std::vector<Vec3>& places) const;
   /// Whether the slope changes between the least and the largest coordinate of these places.
   bool bends_within(const std::vector<Vec3>& places) const;
 
  private:
   double coordinate(const Vec3& position) const { return axis_ < 0 ? (position - centre_).norm() : position[axis_]; }
+  const Values* table_;
   int axis_ = -1;  // -1: distance from the centre
   Vec3 centre_ = Vec3::Zero();
   std::vector<double> positions_, values_;  // m, ascending

@@ -164,15 +164,15 @@ const std::string& name_taken(const Values* instead, const std::string& name) {
   return found == replaced.end() ? name : instead->texts("by")[static_cast<std::size_t>(found - replaced.begin())];
 }
 
-void check_motion(const Values& root, const Values& motion) {
+void check_motion(const Case& read, const Values& motion) {
   const std::vector<std::string>&replaced = motion.texts("replace"), &by = motion.texts("by");
   if (by.size() != replaced.size())
     fail(motion, "by", fmt::format("as many names as in replace ({})", replaced.size()), fmt::format("{}", by.size()));
   Names known("function or record");
-  for (const char* key : {"function", "record"})
-    for (const Values& table : root.tables(key)) known.add(table, "name");
+  for (const CaseFunction& function : read.input->functions) known.add(function.name);
+  for (const CaseRecord& record : read.records) known.add(record.name, {}, {});
   std::vector<std::string> drives;
-  for (const DrivenBy& place : motions_wanted(root)) drives.push_back(place.table->text("function"));
+  for (const DrivenBy& place : motions_wanted(read)) drives.push_back(place.function.name);
   for (std::size_t i = 0; i < by.size(); ++i) {
     known.find(by[i], motion.where("by"), motion.path("by"));
     if (std::ranges::find(drives, replaced[i]) == drives.end())
@@ -182,22 +182,23 @@ void check_motion(const Values& root, const Values& motion) {
   }
 }
 
-std::vector<DrivenBy> motions_wanted(const Values& root) {
+std::vector<DrivenBy> motions_wanted(const Case& read) {
   std::vector<DrivenBy> wanted;
-  for (const Values& ground : root.tables("ground_acceleration")) wanted.push_back({&ground, MotionKind::acceleration});
-  for (const Values& motion : root.tables("motion"))
-    if (motion.has("function")) wanted.push_back({&motion, MotionKind::displacement, motion.text("direction").front() == 'r'});
-  for (const Values& absorbing : root.tables("absorbing"))
-    if (const Values* incident = table_if(absorbing, "incident")) wanted.push_back({incident, MotionKind::velocity});
+  for (const CaseGround& ground : read.input->grounds) wanted.push_back({ground.function, MotionKind::acceleration});
+  for (const CaseMotion& motion : read.input->motions)
+    if (motion.function) wanted.push_back({*motion.function, MotionKind::displacement, motion.turns});
+  for (const Values& absorbing : read.values.tables("absorbing"))
+    if (const Values* incident = table_if(absorbing, "incident"))
+      wanted.push_back({name_used(*incident, "function"), MotionKind::velocity});
   return wanted;
 }
 
-std::vector<MotionUse> motions_used(const Values& root, const std::vector<CaseRecord>& records, const Values* instead, double factor) {
+std::vector<MotionUse> motions_used(const Case& read, const Values* instead, double factor) {
   std::vector<MotionUse> used;
-  for (const DrivenBy& place : motions_wanted(root)) {
-    const std::string& name = name_taken(instead, place.table->text("function"));
-    const auto record = std::ranges::find(records, name, &CaseRecord::name);
-    if (record == records.end()) continue;
+  for (const DrivenBy& place : motions_wanted(read)) {
+    const std::string& name = name_taken(instead, place.function.name);
+    const auto record = std::ranges::find(read.records, name, &CaseRecord::name);
+    if (record == read.records.end()) continue;
     const auto same = [&](const MotionUse& each) { return each.history == record->history && each.kind == place.kind; };
     if (std::ranges::none_of(used, same)) used.push_back({record->history, place.kind});
   }

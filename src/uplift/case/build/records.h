@@ -4,12 +4,14 @@
 #include <string_view>
 #include <vector>
 
-#include "uplift/base/declare.h"
+#include "uplift/case/schema/case_table.h"
 #include "uplift/motion/motion_function.h"
 #include "uplift/run/run.h"
 
 // Recorded and generated motions of a case: `[[record]]` tables.
 namespace uplift {
+
+struct Case;
 
 /// A record of the case, read and processed.
 struct CaseRecord {
@@ -28,7 +30,7 @@ std::vector<CaseRecord> read_records(const Values& root);
 std::string record_path(const Values& record);
 
 /// Refuses a [[compare.motion]] whose names do not pair, drive nothing or do not exist.
-void check_motion(const Values& root, const Values& motion);
+void check_motion(const Case&, const Values& motion);
 /// A history that gives a quantity: this one, or when it would have to be differentiated, that of its spline (see converted).
 std::shared_ptr<const MotionHistory> giving(const std::shared_ptr<const MotionHistory>& history, MotionKind kind);
 
@@ -40,18 +42,18 @@ const std::string& name_taken(const Values* instead, const std::string& name);
 
 /// A place of the case file where a function, or a record, drives the model.
 struct DrivenBy {
-  const Values* table;   // its `function` is the name
+  NameUsed function;     // or record
   MotionKind kind;       // the quantity that it takes of a record
   bool rotates = false;  // a rotation: of no record
 };
-std::vector<DrivenBy> motions_wanted(const Values& root);
+std::vector<DrivenBy> motions_wanted(const Case&);
 
 /// A record that a run uses, once for every quantity.
 struct MotionUse {
   std::shared_ptr<const MotionHistory> history;
   MotionKind kind;
 };
-std::vector<MotionUse> motions_used(const Values& root, const std::vector<CaseRecord>& records, const Values* instead, double factor = 1);
+std::vector<MotionUse> motions_used(const Case&, const Values* instead, double factor = 1);
 
 /// What the displacement of a record gets on top, see MotionFunction [s2]: zero when the dynamic stages differ or damp numerically.
 double newmark_share(const std::vector<Stage>& stages);

@@ -71,14 +71,14 @@ std::vector<Joint> joints_of(const Values& table, const std::vector<FacePair>& o
 
 }  // namespace
 
-Vec3 upward(const Values& root, Space space) {
-  const Vec3 down = gravity_of(root, space);
-  return down.norm() > 0 ? Vec3(-down.normalized()) : space.axis(space.up());
+Vec3 upward(const CaseInput& input) {
+  const Vec3 down = input.gravity ? input.gravity->acceleration : Vec3::Zero();
+  return down.norm() > 0 ? Vec3(-down.normalized()) : input.space.axis(input.space.up());
 }
 
 std::vector<InterfacePart> interface_parts(const Case& read, bool rigid_ground, ModelBuilder& builder, CaseNames& names) {
   const std::vector<Values>& tables = read.values.tables("interface");
-  const Vec3 up = upward(read.values, names.space);
+  const Vec3 up = upward(*read.input);
   std::vector<InterfacePart> parts;
   for (std::size_t k = 0; k < tables.size(); ++k) {
     const std::string& name = tables[k].text("name");

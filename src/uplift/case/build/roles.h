@@ -9,7 +9,7 @@
 namespace uplift {
 
 /// Unit vector against gravity; without gravity the vertical axis.
-Vec3 upward(const Values& root, Space space);
+Vec3 upward(const CaseInput& input);
 
 /// An interface of the model: an [[interface]] of the case, or its base or its walls; or a [[foundation]].
 struct InterfacePart {

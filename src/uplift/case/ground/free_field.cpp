@@ -18,15 +18,20 @@ namespace {
 /// The faces of one side, in horizontal rows.
 struct SideFaces {
   const Values& absorbing;
+  NameUsed group;
   const CaseSolids& solids;
   const std::vector<CellId>& faces;
   int up;
   double tolerance = 0;  // m
 
   SideFaces(const Values& table, const CaseNames& names)
-      : absorbing(table), solids(names.mesh_for(table)), faces(solids.edges(table, "group")), up(names.space.up()) {
+      : absorbing(table),
+        group(name_used(table, "group")),
+        solids(names.mesh_for(group)),
+        faces(solids.edges(group)),
+        up(names.space.up()) {
     double low = INFINITY, high = -INFINITY;
-    for (const int node : solids.nodes(table, "group")) {
+    for (const int node : solids.nodes(group)) {
       low = std::min(low, place(node)[up]);
       high = std::max(high, place(node)[up]);
     }
@@ -87,13 +92,13 @@ struct SideFaces {
 /// The incident wave that comes in below the foot of a side.
 const Values& wave_below(const Values& root, const SideFaces& side, double foot) {
   std::vector<int> feet;
-  for (const int node : side.solids.nodes(side.absorbing, "group"))
+  for (const int node : side.solids.nodes(side.group))
     if (side.same(side.place(node)[side.up], foot)) feet.push_back(node);
   const Values* found = nullptr;
   for (const Values& absorbing : root.tables("absorbing")) {
     const Values* incident = table_if(absorbing, "incident");
     if (!incident) continue;
-    const std::vector<int> nodes = side.solids.nodes(absorbing, "group");
+    const std::vector<int> nodes = side.solids.nodes(name_used(absorbing, "group"));
     if (std::ranges::none_of(nodes, [&](int node) { return std::ranges::find(feet, node) != feet.end(); })) continue;
     if (found) fail(side.absorbing, "free_field", "one incident wave below the face", "several");
     found = incident;

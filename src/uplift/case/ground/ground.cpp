@@ -17,7 +17,8 @@ struct Side {
 };
 
 Side side_of(const Values& tie, std::string_view key, const CaseNames& names) {
-  Side side{names.mesh_for(tie).nodes(tie, key), {}, {}};
+  const NameUsed group = name_used(tie, key);
+  Side side{names.mesh_for(group).nodes(group), {}, {}};
   const std::vector<Vec3>& places = names.solids->mesh().nodes;
   side.low = side.high = places[static_cast<std::size_t>(side.nodes.front())];
   for (const int node : side.nodes) {

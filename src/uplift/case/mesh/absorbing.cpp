@@ -15,7 +15,7 @@ Vec3 incident_motion(const Values& incident, Space space) {
 std::shared_ptr<const TimeFunction> incident_velocity(const Values& incident, const CaseNames& names) {
   // The surface of free rock moves twice as much as the wave that comes up.
   const double incoming = incident.text("kind") == "outcrop" ? 0.5 : 1;
-  return scaled(incoming * incident.number("velocity"), names.function(incident, MotionKind::velocity));
+  return scaled(incoming * incident.number("velocity"), names.function(name_used(incident, "function"), MotionKind::velocity));
 }
 
 namespace {
@@ -29,11 +29,12 @@ const CellRule* rule_if_part(const CaseSolids& solids, CellId face, CellRule& ma
 
 /// The wave that comes in through the faces of a table: their pattern of forces, times its velocity.
 void add_incident(const Values& faces, const Values& incident, ModelBuilder& builder, const CaseNames& names) {
-  const CaseSolids& solids = names.mesh_for(faces);
+  const NameUsed group = name_used(faces, "group");
+  const CaseSolids& solids = names.mesh_for(group);
   const Vec3 motion = incident_motion(incident, names.space);
   const int d = names.space.dimension;
   std::vector<std::pair<int, double>> pattern;
-  for (const CellId edge : solids.edges(faces, "group")) {
+  for (const CellId edge : solids.edges(group)) {
     const std::vector<int> nodes = names.nodes_of_cell(edge);
     CellRule part;
     const AbsorbingFace face(solids.mesh().type(edge), nodes, names.coordinates,
@@ -51,8 +52,9 @@ void add_incident(const Values& faces, const Values& incident, ModelBuilder& bui
 void add_faces(const Values& root, ModelBuilder& builder, const CaseNames& names) {
   for (const ElementEntry* entry : elements_at(ElementPlace::faces))
     for (const Values& table : root.tables(entry->name)) {
-      const CaseSolids& solids = names.mesh_for(table);
-      for (const CellId edge : solids.edges(table, "group")) {
+      const NameUsed group = name_used(table, "group");
+      const CaseSolids& solids = names.mesh_for(group);
+      for (const CellId edge : solids.edges(group)) {
         const std::vector<int> nodes = names.nodes_of_cell(edge);
         CellRule part;
         builder.add_element(entry->cover({solids.mesh().type(edge), nodes, names.coordinates, rule_if_part(solids, edge, part)}, table,

@@ -40,7 +40,7 @@ std::vector<BeamCells::Stretch> BeamCells::take(const Values& beam) {
   const Mesh& mesh = solids_->mesh();
   std::vector<Stretch> stretches;
   int number = 0;
-  for (const CellId cell : solids_->lines(beam)) {
+  for (const CellId cell : solids_->lines(name_used(beam, "group"))) {
     check_use(beam, cell);
     ++number;
     const std::span<const int> nodes = mesh.cell(cell);

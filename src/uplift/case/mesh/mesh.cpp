@@ -110,11 +110,10 @@ void open_surfaces(const std::vector<Values>& interfaces, CaseMesh& made) {
       made.open[k] = facing_pairs(made.mesh, surface->text("lower_group"), surface->text("upper_group"), surface->where("upper_group"));
 }
 
-const Group& group_named(const Mesh& mesh, const Values& table, std::string_view key, const std::string& what) {
-  const std::string& name = table.text(key);
-  const auto found = mesh.groups.find(name);
+const Group& group_named(const Mesh& mesh, const NameUsed& used, const std::string& what) {
+  const auto found = mesh.groups.find(used.name);
   if (found != mesh.groups.end()) return found->second;
-  throw absent_group(mesh, name, table.where(key), table.path(key), what);
+  throw absent_group(mesh, used.name, used.where(), used.path(), what);
 }
 
 /// What a group holds, in the words of its mesh: cells fill it, edges (in space: faces) bound them.
@@ -195,7 +194,7 @@ CaseSolids::CaseSolids(const Values& root, const CaseMesh& from)
 
 void CaseSolids::add(const ElementEntry& entry, const Values& solid) {
   const std::vector<CellId>& cells = sides_.cells();
-  const Group& group = group_named(*mesh_, solid, "group", "a group of cells");
+  const Group& group = group_named(*mesh_, name_used(solid, "group"), "a group of cells");
   if (group.dimension != mesh_->dimension || group.cells.empty())
     fail(solid, "group", "a group of cells", dimension_word(*mesh_, group.dimension));
   for (const CellId cell : group.cells) {
@@ -238,25 +237,25 @@ Vec3 CaseSolids::centre_beside(CellId edge) const {
   return sum / static_cast<double>(nodes.size());
 }
 
-std::vector<int> CaseSolids::nodes(const Values& table, std::string_view key) const {
-  std::vector<int> found = nodes_of(*mesh_, group_named(*mesh_, table, key, "a group of the mesh"));
-  if (found.empty()) fail(table, key, "a group with nodes", "an empty one");
+std::vector<int> CaseSolids::nodes(const NameUsed& group) const {
+  std::vector<int> found = nodes_of(*mesh_, group_named(*mesh_, group, "a group of the mesh"));
+  if (found.empty()) fail(group, "a group with nodes", "an empty one");
   return found;
 }
 
-const std::vector<CellId>& CaseSolids::lines(const Values& table) const {
-  const Group& group = group_named(*mesh_, table, "group", "a group of lines");
-  if (group.dimension != 1 || group.cells.empty()) fail(table, "group", "a group of lines", dimension_word(*mesh_, group.dimension));
+const std::vector<CellId>& CaseSolids::lines(const NameUsed& name) const {
+  const Group& group = group_named(*mesh_, name, "a group of lines");
+  if (group.dimension != 1 || group.cells.empty()) fail(name, "a group of lines", dimension_word(*mesh_, group.dimension));
   return group.cells;
 }
 
-const std::vector<CellId>& CaseSolids::edges(const Values& table, std::string_view key) const {
+const std::vector<CellId>& CaseSolids::edges(const NameUsed& name) const {
   const std::string wanted = dimension_word(*mesh_, mesh_->dimension - 1);
-  const Group& group = group_named(*mesh_, table, key, wanted);
-  if (group.dimension != mesh_->dimension - 1 || group.cells.empty()) fail(table, key, wanted, dimension_word(*mesh_, group.dimension));
+  const Group& group = group_named(*mesh_, name, wanted);
+  if (group.dimension != mesh_->dimension - 1 || group.cells.empty()) fail(name, wanted, dimension_word(*mesh_, group.dimension));
   for (const CellId edge : group.cells)
     if (!beside(edge))
-      fail(table, key, mesh_->dimension == 2 ? "edges of cells" : "faces of cells", describe_cell(*mesh_, edge) + " beside no cell");
+      fail(name, mesh_->dimension == 2 ? "edges of cells" : "faces of cells", describe_cell(*mesh_, edge) + " beside no cell");
   return group.cells;
 }
 

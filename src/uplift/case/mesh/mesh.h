@@ -52,12 +52,10 @@ class CaseSolids {
   std::vector<int> outward_nodes(CellId edge) const;
   /// Mean place of the nodes of the cell that has this edge, which must be one.
   Vec3 centre_beside(CellId edge) const;
-  /// Nodes of the group named under `key`.
-  std::vector<int> nodes(const Values& table, std::string_view key) const;
-  /// Lines of the group named under "group"; InputError for a group of something else.
-  const std::vector<CellId>& lines(const Values& table) const;
-  /// Edges of the group named under `key`; InputError for a group of something else.
-  const std::vector<CellId>& edges(const Values& table, std::string_view key) const;
+  std::vector<int> nodes(const NameUsed& group) const;
+  // Lines or edges of a group; InputError for a group of something else.
+  const std::vector<CellId>& lines(const NameUsed& group) const;
+  const std::vector<CellId>& edges(const NameUsed& group) const;
   /// The surface beside cuts that has this name; null: none.
   const std::vector<FreeFace>* free_surface(const std::string& name) const;
 

@@ -1,14 +1,29 @@
 #include "uplift/case/schema/structure_sections.h"
 
-#include <array>
+#include <fmt/format.h>
 
-#include "uplift/case/build/profile.h"
+#include <array>
+#include <cmath>
+
 #include "uplift/model/function.h"
 
 namespace uplift {
 namespace {
 
 using Fields = std::vector<Field>;
+
+/// Something about the three axes: `plural` in space, else `single`, which is about z, or with `everywhere` about all axes of space. Zero
+/// when neither is there.
+Vec3 about_axes(const Values& table, std::string_view single, std::string_view plural, bool everywhere, Space space) {
+  if (table.has(plural)) {
+    if (space.dimension == 2) fail(table, plural, fmt::format("{} in a plane model", single), "three numbers");
+    if (table.has(single) && table.number(single) != 0) fail(table, single, fmt::format("either {} or {}", single, plural), "both");
+    const std::vector<double>& numbers = table.numbers(plural);
+    return {numbers[0], numbers[1], numbers[2]};
+  }
+  const double value = table.has(single) ? table.number(single) : 0;
+  return everywhere && space.dimension == 3 ? Vec3(value, value, value) : Vec3(0, 0, value);
+}
 
 }  // namespace
 
@@ -19,6 +34,10 @@ const Section& node_section() {
                          "ux, uy, uz, rx, ry, rz",
                          Fields{vector("value", "m", "position [x, y], y points up; in space [x, y, z], z points up")}};
   return s;
+}
+
+CaseNode case_node(const Values& table, Space space) {
+  return {{&table}, table.key(), vector_of(table, "value", space)};
 }
 
 const Section& mass_section() {
@@ -33,6 +52,15 @@ const Section& mass_section() {
              number("inertia", "kg m2", "rotary inertia; in space about every axis").nonnegative().standard(0.0),
              numbers("inertias", "kg m2", "in space: about the axes x, y, z, instead of inertia", 3).optional()}};
   return s;
+}
+
+CaseMass case_mass(const Values& table, Space space) {
+  first_of_two(table, "mass", "tuned_frequency");
+  return {{&table},
+          name_used(table, "node"),
+          number_if(table, "mass"),
+          number_if(table, "tuned_frequency").value_or(0),
+          about_axes(table, "inertia", "inertias", true, space)};
 }
 
 const std::vector<Section>& element_sections(ElementPlace place) {
@@ -61,6 +89,17 @@ const Section& rigid_section() {
   return s;
 }
 
+CaseBody case_body(const Values& table, Space space) {
+  return {{&table},
+          name_if(table, "name"),
+          name_if(table, "node"),
+          name_if(table, "group"),
+          names_used(table, "slaves"),
+          table.number("mass"),
+          about_axes(table, "inertia", "inertias", true, space),
+          vector_if(table, "centre", space)};
+}
+
 const Section& support_section() {
   static const Section s{
       "support", "unknowns that are held, of a node or of a group of the mesh",
@@ -70,6 +109,10 @@ const Section& support_section() {
                     "static: it is released when the first dynamic stage begins; what it has borne goes on as a constant load")
                  .standard("all")}};
   return s;
+}
+
+CaseSupport case_support(const Values& table) {
+  return {{&table}, node_or_group(table), names_used(table, "fixed"), table.text("stages") == "static"};
 }
 
 Field amplitude_field() {
@@ -95,6 +138,18 @@ const Section& motion_section() {
   return s;
 }
 
+CaseMotion case_motion(const Values& table) {
+  const NodeOrGroup of = node_or_group(table);
+  const NameUsed direction = name_used(table, "direction");
+  return {{&table},
+          of,
+          text_or(table, "name", "motion of " + of.name()),
+          direction,
+          direction.name.starts_with('r'),
+          table.text("amplitude"),
+          name_if(table, "function")};
+}
+
 const Section& ground_section() {
   static const Section s{
       "ground_acceleration", "acceleration of the whole ground: inertia forces -M r a(t) in the frame that moves with it",
@@ -106,6 +161,15 @@ const Section& ground_section() {
   return s;
 }
 
+/// A direction alone: its length would be a factor on the earthquake that nobody has asked for.
+CaseGround case_ground(const Values& table, Space space) {
+  constexpr double rounded = 0.01;  // [0.71, 0.71]
+  const Vec3 direction = vector_if(table, "direction", space).value_or(space.axis(0));
+  if (const double length = direction.norm(); std::abs(length - 1) > rounded)
+    fail(table, "direction", "a direction of length 1 (the amplitude is the factor)", fmt::format("one of length {:.4g}", length));
+  return {{&table}, text_or(table, "name", "ground acceleration"), direction, table.number("amplitude"), name_used(table, "function")};
+}
+
 const Section& gravity_section() {
   static const Section s{
       "gravity", "weight of all masses, applied by the static stages",
@@ -113,11 +177,19 @@ const Section& gravity_section() {
   return s;
 }
 
+CaseGravity case_gravity(const Values& table, Space space) {
+  return {{&table}, vector_if(table, "acceleration", space).value_or(-9.81 * space.axis(space.up()))};
+}
+
 const Section& function_section() {
   static const Section s{
       "function", "a function of time that loads and motions refer to",
       Fields{text("name", "name"), part("shape", time_functions, "what it is; without unit: it multiplies an amplitude")}};
   return s;
+}
+
+CaseFunction case_function(const Values& table) {
+  return {{&table}, name_used(table, "name"), &table.part("shape")};
 }
 
 const Section& load_section() {
@@ -139,6 +211,41 @@ const Section& load_section() {
   return s;
 }
 
+CaseLoad case_load(const Values& table, Space space) {
+  CaseLoad load{{&table},
+                node_or_group(table),
+                {},
+                vector_if(table, "force", space),
+                vector_if(table, "traction", space),
+                number_if(table, "pressure"),
+                about_axes(table, "moment", "moments", false, space),
+                {},
+                name_if(table, "function")};
+  load.name = text_or(table, "name", "load on " + load.of.name());
+  const auto refuse = [&](std::initializer_list<const char*> keys, const char* wanted, const char* found) {
+    for (const char* key : keys)
+      if (table.has(key)) fail(table, key, wanted, found != nullptr ? found : key);
+  };
+  if (load.of.node) {
+    refuse({"traction", "pressure", "profile"}, "force or moment on a node", nullptr);
+    if (!load.force && !table.has("moment") && !table.has("moments")) fail(table, "", "force or moment", "neither");
+    return load;
+  }
+  refuse({"moment", "moments"}, "pressure, traction or force on a group", "a moment");
+  std::string found;
+  for (const char* key : {"pressure", "traction", "force"}) {
+    if (!table.has(key)) continue;
+    if (!found.empty()) fail(table, key, "only one of pressure, traction, force", fmt::format("{} and {}", found, key));
+    found = key;
+  }
+  if (found.empty()) fail(table, "", "one of pressure, traction, force on a group", "none");
+  if (const Values* profile = table_if(table, "profile")) {
+    if (load.force) fail(*profile, "", "profile with pressure or traction", "profile with force");
+    load.profile.emplace(*profile, "factors", space);
+  }
+  return load;
+}
+
 const Section& initial_section() {
   static const Section s{
       "initial",
@@ -154,6 +261,22 @@ const Section& initial_section() {
              vector("centre", "m", "of a group that rotates: the point about which it does; absent: the mean position of its nodes")
                  .optional()}};
   return s;
+}
+
+CaseInitial case_initial(const Values& table, Space space) {
+  const auto motion = [&](const char* translation, const char* rotation, const char* rotations) {
+    CaseInitial::Motion made{vector_if(table, translation, space), {}};
+    if (table.has(rotation) || table.has(rotations)) made.rotation = about_axes(table, rotation, rotations, false, space);
+    return made;
+  };
+  CaseInitial initial{{&table},
+                      node_or_group(table),
+                      motion("displacement", "rotation", "rotations"),
+                      motion("velocity", "angular_velocity", "angular_velocities"),
+                      vector_if(table, "centre", space)};
+  if (initial.centre && !(initial.of.group && (initial.displacement.rotation || initial.velocity.rotation)))
+    fail(table, "centre", "centre with a group that rotates", "centre without a group or without a rotation");
+  return initial;
 }
 
 }  // namespace uplift

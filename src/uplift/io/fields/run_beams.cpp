@@ -12,7 +12,7 @@ void BeamFrames::add(const Values& beam, const CaseSolids& solids, const BuiltCa
   const auto line = std::ranges::find(built.beams, beam.text("name"), &BeamLine::name);
   std::map<CellId, std::pair<int, double>> middle;  // element, share of its length
   int next = line->first_element;
-  for (const CellId cell : solids.lines(beam)) {
+  for (const CellId cell : solids.lines(name_used(beam, "group"))) {
     const int elements = beam.integer("elements") * (solids.mesh().cell(cell).size() == 3 ? 2 : 1);
     middle[cell] = elements % 2 == 0 ? std::pair(next + elements / 2 - 1, 1.0) : std::pair(next + elements / 2, 0.5);
     next += elements;

@@ -8,6 +8,7 @@
 
 #include "uplift/base/text.h"
 #include "uplift/case/mesh/mesh.h"
+#include "uplift/case/schema/case_input.h"
 #include "uplift/elements/element_entry.h"
 
 namespace uplift {
@@ -111,7 +112,7 @@ RunFrames::RunFrames(const Values& fields, const Case& read, const BuiltCase& bu
   if (!interfaces_.mesh().face.empty()) blocks_.push_back(interfaces_.mesh().mesh);
   dimension_ = model_->space.dimension;
   stride_ = static_cast<std::size_t>(model_->space.unknowns());
-  first_ = stride_ * read.values.tables("nodes").size();  // nodes of the case, then those of the mesh
+  first_ = stride_ * read.input->nodes.size();  // nodes of the case, then those of the mesh
 }
 
 bool RunFrames::wants(std::string_view quantity) const {

@@ -1,0 +1,39 @@
+#include "uplift/case/schema/case_input.h"
+
+#include "uplift/mesh/mesh.h"
+
+namespace uplift {
+namespace {
+
+/// The tables of one name.
+template <class Table, class... More>
+std::vector<Table> all(const Values& root, std::string_view key, Table (*read)(const Values&, More...), More... more) {
+  std::vector<Table> made;
+  for (const Values& table : root.tables(key)) made.push_back(read(table, more...));
+  return made;
+}
+
+int dimension_of_nodes(const Values& root) {
+  const std::vector<Values>& nodes = root.tables("nodes");
+  return nodes.empty() ? 2 : static_cast<int>(nodes.front().numbers("value").size());
+}
+
+}  // namespace
+
+CaseInput case_input(const Values& root, const Mesh* mesh) {
+  CaseInput made;
+  const Space space = made.space = {mesh != nullptr ? mesh->dimension : dimension_of_nodes(root)};
+  made.nodes = all(root, "nodes", case_node, space);
+  made.masses = all(root, "mass", case_mass, space);
+  made.bodies = all(root, "rigid", case_body, space);
+  made.supports = all(root, "support", case_support);
+  made.motions = all(root, "motion", case_motion);
+  made.grounds = all(root, "ground_acceleration", case_ground, space);
+  if (const Values* gravity = table_if(root, "gravity")) made.gravity = case_gravity(*gravity, space);
+  made.functions = all(root, "function", case_function);
+  made.loads = all(root, "load", case_load, space);
+  made.initial = all(root, "initial", case_initial, space);
+  return made;
+}
+
+}  // namespace uplift

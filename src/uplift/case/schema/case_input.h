@@ -1,0 +1,26 @@
+#pragma once
+#include "uplift/case/schema/structure_sections.h"
+
+namespace uplift {
+
+struct Mesh;
+
+/// The checked case file as structs, tables in the order of the file. They point into the values that they were read from.
+struct CaseInput {
+  Space space;
+  std::vector<CaseNode> nodes;
+  std::vector<CaseMass> masses;
+  std::vector<CaseBody> bodies;
+  std::vector<CaseSupport> supports;
+  std::vector<CaseMotion> motions;
+  std::vector<CaseGround> grounds;
+  std::optional<CaseGravity> gravity;
+  std::vector<CaseFunction> functions;
+  std::vector<CaseLoad> loads;
+  std::vector<CaseInitial> initial;
+};
+
+/// Plane or space: as the mesh, else as the first node. Throws InputError.
+CaseInput case_input(const Values& root, const Mesh* mesh);
+
+}  // namespace uplift
