@@ -253,12 +253,11 @@ double base_size(const Model& model) {
 
 /// A base of width B that turns by the limit theta opens by B theta at its toe: as far, everywhere, the displacement is no smaller beside
 /// the structure than there. No gap is what is 1e-10 of its size, in all units of length alike.
-void set_limits(const Values& limits, const Model& model, RunPlan& plan) {
+void set_limits(const CaseLimits& limits, const Model& model, RunPlan& plan) {
   const double size = base_size(model);
-  const auto limit = [&](const char* key, double absent) { return limits.has(key) ? limits.number(key) : absent; };
-  plan.rotation_limit = limits.number("rotation");
-  plan.separation_limit = limit("separation", plan.rotation_limit * size);
-  plan.gap_tolerance = limit("gap_tolerance", size > 0 ? 1e-10 * size : 1e-9);
+  plan.rotation_limit = limits.rotation;
+  plan.separation_limit = limits.separation.value_or(limits.rotation * size);
+  plan.gap_tolerance = limits.gap_tolerance.value_or(size > 0 ? 1e-10 * size : 1e-9);
 }
 
 /// Tells of interfaces that were divided by their normals.
@@ -301,7 +300,7 @@ void put_name(const RunSpec& spec, RunPlan& plan) {
 }
 
 int frames_of(const Case& read, const RunSpec& spec, const Model& model) {
-  const int wanted = spec.pictures ? read.values.table("output").integer("frames") : 0;
+  const int wanted = spec.pictures ? read.input->output.frames : 0;
   return std::min(wanted, std::max(2, most_pictured / std::max(1, model.full_unknowns())));
 }
 
@@ -330,7 +329,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
     built.notes.push_back(fmt::format("the tuned mass is {:.10g} kg", built.tuned_mass));
   }
   built.plan.stages = stages_of(read, spec);
-  check_second_order_water(root);
+  check_second_order_water(read);
   move_model(make_model(read, spec, tuned, nullptr, names, built), built.model);
   const bool released = any_released(*read.input);
   const bool rests = std::ranges::any_of(built.plan.stages, [](const Stage& stage) { return stage.type == Stage::Type::statics; });
@@ -345,7 +344,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
   plan.interface_solver = interface_solver(root.text("interface_solver"));
   adapt_laws(read, spec, built);
   if (released) {
-    check_release(root, plan.stages);
+    check_release(read.input->stages, plan.stages);
     plan.rest = resting_model(read, spec, tuned, built);
     check_static(*plan.rest, root.where());
   }
@@ -355,13 +354,13 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
     check_impulses(built.model);
   add_initial(*read.input, names, built);
   find_shown(read, names, built);
-  plan.created_limit = root.table("energy").number("created_limit");
-  plan.stop_at_limit = root.table("energy").flag("stop_at_limit");
-  set_limits(root.table("limits"), built.model, plan);
+  plan.created_limit = read.input->energy.created_limit;
+  plan.stop_at_limit = read.input->energy.stop_at_limit;
+  set_limits(read.input->limits, built.model, plan);
   for (const InterfaceFacts& facts : built.facts) plan.bases.push_back(facts.upper), plan.facets.push_back(facts.facets);
   for (std::size_t k = 0; k < built.facts.size(); ++k) plan.is_wall.push_back(k >= built.bases());
   note_divided(built);
-  plan.every = root.table("output").integer("every");
+  plan.every = read.input->output.every;
   plan.frames = frames_of(read, spec, built.model);
   add_requests(read, names, built);
   if (!spec.stiffness_ratio) add_floors(read, built);

@@ -8,6 +8,7 @@
 #include "uplift/base/text.h"
 #include "uplift/case/build/names.h"
 #include "uplift/case/case.h"
+#include "uplift/case/schema/case_input.h"
 
 // Which runs a case stands for: itself, its variants, its dampings, its stiffness sweep.
 namespace uplift {
@@ -159,9 +160,9 @@ std::vector<RunSpec> runs_of_case(const Case& read) {
 
 std::vector<RunSpec> companions_of_case(const Case& read) {
   bool long_enough = false;
-  for (const Values& stage : read.values.tables("stage")) {
-    if (stage.text("type") == "static" || !stage.has("duration") || !stage.has("step")) continue;
-    long_enough = stage.number("duration") >= least_steps_to_compare * stage.number("step");
+  for (const CaseStage& stage : read.input->stages) {
+    if (stage.statics || !stage.duration || !stage.step) continue;
+    long_enough = *stage.duration >= least_steps_to_compare * *stage.step;
     if (!long_enough) break;
   }
   const bool wanted = !read.values.has("verdict") || read.values.table("verdict").flag("step_check");

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "uplift/case/schema/case_input.h"
 #include "uplift/cli/console.h"
 
 namespace uplift::cli {
@@ -55,9 +56,9 @@ Control control_of(const Options& options, ResultFolder* folder) {
 
 void keep_checkpoints(const LoadedCase& loaded, const std::string& verb, const ResultFolder& folder, const std::string& from,
                       std::optional<Checkpoints>& checkpoints, Control& control) {
-  const Values& output = loaded.read.values.table("output");
-  if (!output.has("checkpoint")) return;
-  checkpoints.emplace(origin_of(loaded, verb, control.step_check), output.number("checkpoint"), folder, from);
+  const std::optional<double>& every = loaded.read.input->output.checkpoint;
+  if (!every) return;
+  checkpoints.emplace(origin_of(loaded, verb, control.step_check), *every, folder, from);
   control.checkpoints = &*checkpoints;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <deque>
 
+#include "uplift/case/schema/case_input.h"
 #include "uplift/run/lockstep.h"
 #include "uplift/session/history_file.h"
 #include "uplift/session/steps.h"
@@ -34,9 +35,9 @@ bool same_floors(const RunPlan& one, const RunPlan& other) {
 /// Whether runs of this model are best marched side by side: what a run does beside its march (fields, checkpoints, laws of the caller) is
 /// done alone.
 bool marches_in_lockstep(const LoadedCase& loaded, const RunSpec& spec, const BuiltCase& built, bool with_fields) {
-  return !loaded.read.values.table("output").has("checkpoint") && built.model.free() >= large_model && spec.other_case.empty() &&
+  return !loaded.read.input->output.checkpoint && built.model.free() >= large_model && spec.other_case.empty() &&
          loaded.from.reduced == nullptr && loaded.external_laws.empty() && built.model.distributed == nullptr &&
-         !(with_fields && loaded.read.values.table("output").has("fields"));
+         !(with_fields && loaded.read.input->output.fields);
 }
 
 /// Where its matrices are those of an earlier run of the group, the model takes them from there.
@@ -196,8 +197,8 @@ Results compare_case(const LoadedCase& loaded, const Control& control) {
   const Comparison plan = comparison_of_case(loaded.read);
   const std::size_t total = plan.runs.size() + plan.sweep.size();
   Results results, sweep;
-  const Values& output = loaded.read.values.table("output");
-  const bool with_fields = output.has("fields") && output.table("fields").flag("variants");
+  const std::optional<CaseFields>& fields = loaded.read.input->output.fields;
+  const bool with_fields = fields && fields->variants;
   ListOfRuns(loaded, control, {plan.runs, 0, total, true, with_fields}, results).run();
   ListOfRuns(loaded, control, {plan.sweep, plan.runs.size(), total, false, false}, sweep).run();
 

@@ -1,6 +1,7 @@
 #include "uplift/session/steps.h"
 
 #include "uplift/base/text.h"
+#include "uplift/case/schema/case_input.h"
 #include "uplift/io/fields/run.h"
 #include "uplift/linear/memory.h"
 #include "uplift/model/model_matrices.h"
@@ -79,7 +80,7 @@ RunResult run_built(const LoadedCase& loaded, BuiltCase& built, const std::strin
     keeping.from = &*begin;
   }
   std::optional<FieldRun> fields;
-  if (field_lists != nullptr && control.folder != nullptr && loaded.read.values.table("output").has("fields"))
+  if (field_lists != nullptr && control.folder != nullptr && loaded.read.input->output.fields)
     fields.emplace(loaded.read, built, *control.folder);
   kept.attach(keeping, watch, fields ? &*fields : nullptr);
   if (!fields) return run(built.model, built.plan, built.behaviours, watch, observe, &keeping);

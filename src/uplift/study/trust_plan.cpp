@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "uplift/case/build/bed.h"
+#include "uplift/case/schema/case_input.h"
 #include "uplift/contact/method.h"
 #include "uplift/laws/tangential.h"
 
@@ -70,7 +71,8 @@ std::vector<CaseEdit> replaced(const std::string& path, const Values& law, const
 
 class Planner {
  public:
-  explicit Planner(const Case& read) : root_(read.values), trust_(root_.table("trust")), method_(method_values(root_)) {}
+  explicit Planner(const Case& read)
+      : root_(read.values), input_(*read.input), trust_(root_.table("trust")), method_(method_values(root_)) {}
 
   TrustPlan plan() {
     halve_step();
@@ -98,16 +100,16 @@ class Planner {
   void halve_step() {
     std::vector<CaseEdit> edits;
     double smallest = 0;
-    const std::vector<Values>& stages = root_.tables("stage");
+    const std::vector<CaseStage>& stages = input_.stages;
     for (std::size_t i = 0; i < stages.size(); ++i) {
-      if (!stages[i].has("step")) continue;
-      const double half = stages[i].number("step") / 2;
+      if (!stages[i].step) continue;
+      const double half = *stages[i].step / 2;
       smallest = edits.empty() ? half : std::min(smallest, half);
       edits.push_back({fmt::format("stage[{}].step", i), half});
     }
     if (edits.empty()) return leave_out("time step", "the case has no dynamic stage");
     // columns keep their instants
-    edits.push_back({"output.every", std::int64_t{2} * root_.table("output").integer("every")});
+    edits.push_back({"output.every", std::int64_t{2} * input_.output.every});
     add("step_half", "time step", fmt::format("half the time step, {:g} ms", 1e3 * smallest), std::move(edits));
   }
 
@@ -196,8 +198,7 @@ class Planner {
     if (!root_.has("method")) edits.push_back({"method", method_.type()});
     edits.push_back({"method.tolerance", tolerance});
     if (has_number(method_, "gap_tolerance")) edits.push_back({"method.gap_tolerance", tighter("gap_tolerance")});
-    const Values& limits = root_.table("limits");
-    if (limits.has("gap_tolerance")) edits.push_back({"limits.gap_tolerance", 0.1 * limits.number("gap_tolerance")});
+    if (const std::optional<double>& gap = input_.limits.gap_tolerance) edits.push_back({"limits.gap_tolerance", 0.1 * *gap});
     add("tighter", "tolerance", fmt::format("tolerance {:g}", tolerance), std::move(edits));
   }
 
@@ -224,10 +225,10 @@ class Planner {
 
   void change_scheme() {
     std::vector<CaseEdit> edits;
-    const std::vector<Values>& stages = root_.tables("stage");
+    const std::vector<CaseStage>& stages = input_.stages;
     for (std::size_t i = 0; i < stages.size(); ++i) {
-      if (stages[i].text("type") != "dynamic") continue;
-      if (stages[i].part("scheme").type() == "generalised_alpha")
+      if (stages[i].statics) continue;
+      if (stages[i].scheme->type() == "generalised_alpha")
         return leave_out("method", "no other sound method is known for these laws and this scheme");
       edits.push_back({fmt::format("stage[{}].scheme", i), std::string("generalised_alpha")});
       edits.push_back({fmt::format("stage[{}].traction", i), std::string("end")});
@@ -274,7 +275,9 @@ class Planner {
   /// The method has a stiffness of its own in the place of constraints.
   bool regularises() const { return method_.items().contains("stiffness"); }
 
-  const Values &root_, &trust_;
+  const Values& root_;
+  const CaseInput& input_;
+  const Values& trust_;
   const Values method_;
   TrustPlan plan_;
 };

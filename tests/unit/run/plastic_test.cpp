@@ -117,7 +117,7 @@ TEST(PlasticRun, UniaxialCompressionHardensByTheClosedForm) {
       ASSERT_TRUE(rest.outcome.converged) << rest.outcome.why;
       EXPECT_LE(rest.counts.analyses, 2);
       EXPECT_NEAR(settlement(made.built, rest.state), expected, 1e-8 * -expected) << psi;
-      const RunFrames frames(made.read->values.table("output").table("fields"), *made.read, made.built);
+      const RunFrames frames(*made.read->input->output.fields, *made.read, made.built);
       const std::vector<FieldValues> fields = frames.of(rest.state, nullptr, {}, 0).blocks.front().points;
       const std::vector<double>& stress = fields.front().values;
       ASSERT_EQ(fields.back().name, "plastic_strain");

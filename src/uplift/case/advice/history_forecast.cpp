@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "uplift/base/text.h"
-#include "uplift/case/build/names.h"
+#include "uplift/case/schema/case_input.h"
 #include "uplift/linear/memory.h"
 
 namespace uplift {
@@ -34,7 +34,7 @@ void check_history_memory(const Case& read, const BuiltCase& built) {
   if (histories.memory <= small) return;
   const double available = available_memory();
   if (histories.memory <= available) return;
-  fail(read.values.table("output"), "every", fmt::format("histories that fit into the {} of available memory", format_bytes(available)),
+  fail(read.input->output, "every", fmt::format("histories that fit into the {} of available memory", format_bytes(available)),
        fmt::format("{} for {:.4g} steps (a larger step, a shorter duration or a larger `every` takes less)", format_bytes(histories.memory),
                    histories.steps));
 }

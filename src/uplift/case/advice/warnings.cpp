@@ -89,13 +89,12 @@ void warn_idle_functions(const Case& read, const BuiltCase& built, std::vector<s
 /// The geometric stiffness takes the forces of a static stage.
 void warn_p_delta(const Case& read, std::vector<std::string>& said) {
   bool stood = false;
-  for (const Values& stage : read.values.tables("stage")) {
-    const bool rests = stage.text("type") == "static";
-    if (stage.flag("p_delta") && !rests && !stood)
+  for (const CaseStage& stage : read.input->stages) {
+    if (stage.p_delta && !stage.statics && !stood)
       said.push_back(
           fmt::format("{}:{}: p_delta has no effect here: no static stage comes before, whose forces make the geometric stiffness",
                       stage.where("p_delta").file, stage.where("p_delta").line));
-    stood = stood || rests;
+    stood = stood || stage.statics;
   }
 }
 

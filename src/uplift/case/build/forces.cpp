@@ -74,42 +74,42 @@ std::shared_ptr<const ForceQuantity> section(const Stretch& stretch, double shar
   return std::make_shared<const SectionForces>(std::move(rows));
 }
 
-std::vector<const BeamLine*> lines_of(const Values& table, const BuiltCase& built) {
+std::vector<const BeamLine*> lines_of(const NameUsed& beam, const BuiltCase& built) {
   Names beams("beam");
   std::vector<const BeamLine*> lines;
   for (const BeamLine& line : built.beams)
     if (!beams.has(line.name)) beams.add(line.name, {}, {});
-  const std::string& name = beams[beams.find(table, "beam")];
+  const std::string& name = beams[beams.find(beam)];
   for (const BeamLine& line : built.beams)
     if (line.name == name) lines.push_back(&line);
   return lines;
 }
 
-Request column(const Values& history, std::string automatic, std::string_view unit, std::shared_ptr<const ForceQuantity> force) {
+Request column(const CaseHistory& history, std::string automatic, std::string_view unit, std::shared_ptr<const ForceQuantity> force) {
   Request request;
   request.kind = Request::Kind::force;
-  request.name = history.has("name") ? history.text("name") : std::move(automatic);
+  request.name = history.name ? history.name->name : std::move(automatic);
   request.unit = unit;
   request.force = std::move(force);
   return request;
 }
 
-[[noreturn]] void no_such_quantity(const Values& history, const std::vector<std::string>& words, const char* of) {
-  const std::string& word = history.text("quantity");
-  fail(history, "quantity", fmt::format("a quantity of {}: {}", of, fmt::join(words, ", ")), in_quotes(word), nearest_name(word, words));
+[[noreturn]] void no_such_quantity(const CaseHistory& history, const std::vector<std::string>& words, const char* of) {
+  const std::string& word = history.quantity.name;
+  fail(history.quantity, fmt::format("a quantity of {}: {}", of, fmt::join(words, ", ")), in_quotes(word), nearest_name(word, words));
 }
 
 /// The section at `position` or nearest to `at`.
-std::pair<Stretch, double> asked_section(const Values& history, const BuiltCase& built) {
-  const std::vector<const BeamLine*> lines = lines_of(history, built);
+std::pair<Stretch, double> asked_section(const CaseHistory& history, const BuiltCase& built) {
+  const std::vector<const BeamLine*> lines = lines_of(*history.beam, built);
   const Model& model = built.model;
-  if (history.has("position") == history.has("at"))
-    fail(history, "", "exactly one of position and at, for a section of a beam", history.has("at") ? "both" : "neither");
-  if (history.has("position")) {
+  if (history.position.has_value() == history.at.has_value())
+    fail(history, "", "exactly one of position and at, for a section of a beam", history.at ? "both" : "neither");
+  if (history.position) {
     if (lines.size() > 1)
       fail(history, "position", "at, for a beam that consists of several lines", fmt::format("position, of {} lines", lines.size()));
     const std::vector<Stretch> all = stretches(model, *lines.front());
-    const double position = history.number("position"), length = all.back().begin + all.back().length;
+    const double position = *history.position, length = all.back().begin + all.back().length;
     if (position > length * (1 + 1e-9))
       fail(history, "position", fmt::format("a distance of at most {:.6g} m, the length of the beam", length),
            fmt::format("{:.6g} m", position));
@@ -117,7 +117,7 @@ std::pair<Stretch, double> asked_section(const Values& history, const BuiltCase&
       if (position < (each.begin + each.length) - 1e-9 * length) return {each, std::max(0.0, (position - each.begin) / each.length)};
     return {all.back(), 1.0};
   }
-  const Vec3 at = vector_of(history, "at", model.space);
+  const Vec3 at = *history.at;
   std::pair<Stretch, double> nearest{};
   double least = std::numeric_limits<double>::infinity();
   for (const BeamLine* line : lines)
@@ -130,32 +130,32 @@ std::pair<Stretch, double> asked_section(const Values& history, const BuiltCase&
   return nearest;
 }
 
-Request section_request(const Values& history, const BuiltCase& built) {
+Request section_request(const CaseHistory& history, const BuiltCase& built) {
   const Space space = built.model.space;
   std::vector<std::string> words;
   for (const SectionWord& word : section_words(space)) {
     words.emplace_back(word.word);
-    if (word.word != history.text("quantity")) continue;
+    if (word.word != history.quantity.name) continue;
     const auto [stretch, share] = asked_section(history, built);
     const double along = stretch.begin + share * stretch.length;
-    return column(history, fmt::format("{}.{:.6g}.{}", history.text("beam"), along, word.word), word.unit,
+    return column(history, fmt::format("{}.{:.6g}.{}", history.beam->name, along, word.word), word.unit,
                   section(stretch, share, word, space));
   }
   no_such_quantity(history, words, "a beam");
 }
 
 /// Horizontal force that what lies above a level exerts on what lies below, through all beams that cross it.
-Request storey_shear(const Values& history, const BuiltCase& built) {
+Request storey_shear(const CaseHistory& history, const BuiltCase& built) {
   const Model& model = built.model;
   const int dimension = model.space.dimension, up = model.space.up();
   int direction = -1;
   std::vector<std::string> words;
   for (int k = 0; k < dimension - 1; ++k) {
     words.push_back(dimension == 2 ? "storey_shear" : k == 0 ? "storey_shear_x" : "storey_shear_y");
-    if (words.back() == history.text("quantity")) direction = k;
+    if (words.back() == history.quantity.name) direction = k;
   }
   if (direction < 0) no_such_quantity(history, words, "a level");
-  const double level = history.number("level");
+  const double level = *history.level;
   std::vector<Part> parts;
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const BeamLine& line : built.beams)
@@ -173,20 +173,20 @@ Request storey_shear(const Values& history, const BuiltCase& built) {
   if (parts.empty())
     fail(history, "level", fmt::format("a height that beams cross, from {:.6g} m to below {:.6g} m", least, most),
          fmt::format("{:.6g} m", level));
-  Request request = column(history, fmt::format("{}.{:.6g}", history.text("quantity"), level), "N",
+  Request request = column(history, fmt::format("{}.{:.6g}", history.quantity.name, level), "N",
                            std::make_shared<const SectionForces>(std::vector<std::vector<Part>>{std::move(parts)}));
   request.storey = true;
   return request;
 }
 
 /// Displacement of a node relative to one below, as it is or over the difference of heights.
-Request drift(const Values& history, const BuiltCase& built, int node) {
+Request drift(const CaseHistory& history, const BuiltCase& built, int node) {
   const Model& model = built.model;
-  const int below = model.find_node(history.text("below"));
+  const int below = model.find_node(history.below->name);
   if (below < 0) {
     std::vector<std::string> nodes;
     for (const Node& each : model.nodes) nodes.push_back(each.name);
-    fail(history, "below", "the name of a node", in_quotes(history.text("below")), nearest_name(history.text("below"), nodes));
+    fail(*history.below, "the name of a node", in_quotes(history.below->name), nearest_name(history.below->name, nodes));
   }
   const int up = model.space.up();
   const double height =
@@ -195,14 +195,14 @@ Request drift(const Values& history, const BuiltCase& built, int node) {
   for (const bool ratio : {false, true})
     for (int k = 0; k < up; ++k) {
       words.push_back(fmt::format("drift_{}{}", ratio ? "ratio_" : "", "xy"[k]));
-      if (words.back() != history.text("quantity")) continue;
+      if (words.back() != history.quantity.name) continue;
       if (!(height > 0))
-        fail(history, "below", "a node below " + in_quotes(model.nodes[static_cast<std::size_t>(node)].name),
+        fail(*history.below, "a node below " + in_quotes(model.nodes[static_cast<std::size_t>(node)].name),
              fmt::format("one {:.6g} m higher", -height));
       Request request;
       request.kind = Request::Kind::displacement;
       request.name =
-          history.has("name") ? history.text("name") : fmt::format("{}.{}", model.nodes[static_cast<std::size_t>(node)].name, words.back());
+          history.name ? history.name->name : fmt::format("{}.{}", model.nodes[static_cast<std::size_t>(node)].name, words.back());
       request.unit = ratio ? "1" : "m";
       request.unknown = model.space.unknowns() * node + k;
       request.below = model.space.unknowns() * below + k;
@@ -224,11 +224,11 @@ std::vector<std::string> constraint_words(Space space) {
 }
 
 /// Sum of the constraint forces on nodes; moments about the mean of their positions.
-Request constraint_force(const Values& history, const BuiltCase& built, const std::vector<int>& nodes, const std::string& of) {
+Request constraint_force(const CaseHistory& history, const BuiltCase& built, const std::vector<int>& nodes, const std::string& of) {
   const Model& model = built.model;
   const Space space = model.space;
   const std::vector<std::string> words = constraint_words(space);
-  const auto word = std::ranges::find(words, history.text("quantity"));
+  const auto word = std::ranges::find(words, history.quantity.name);
   if (word == words.end()) no_such_quantity(history, words, "supports and ties");
   const int index = static_cast<int>(word - words.begin()), component = index % space.unknowns();
   const bool ties = index >= space.unknowns();
@@ -251,7 +251,7 @@ Request constraint_force(const Values& history, const BuiltCase& built, const st
     return false;
   });
   if (!any)
-    fail(history, "quantity",
+    fail(history.quantity,
          ties ? "a node that a tie or a rigid body holds"
               : "nodes that supports or prescribed motions hold in this direction in dynamic stages",
          fmt::format("\"{}\" of {}, which none holds", *word, of));
@@ -266,29 +266,30 @@ bool is_constraint_force(const std::string& quantity) {
   return quantity.starts_with("reaction") || quantity.starts_with("tie_");
 }
 
-Request force_request(const Values& history, const BuiltCase& built, const CaseNames& names, int node) {
-  const int given = history.has("node") + history.has("interface") + history.has("beam") + history.has("level") + history.has("group");
+Request force_request(const CaseHistory& history, const BuiltCase& built, const CaseNames& names, int node) {
+  const int given = history.node.has_value() + history.interface.has_value() + history.beam.has_value() + history.level.has_value() +
+                    history.group.has_value();
   if (given > 1) fail(history, "", "exactly one of node, at, interface, beam, level and group", fmt::format("{}", given));
-  if (history.has("beam")) return section_request(history, built);
-  if (history.has("level")) return storey_shear(history, built);
-  if (history.has("below")) return drift(history, built, node);
+  if (history.beam) return section_request(history, built);
+  if (history.level) return storey_shear(history, built);
+  if (history.below) return drift(history, built, node);
   if (node >= 0) return constraint_force(history, built, {node}, built.model.nodes[static_cast<std::size_t>(node)].name);
-  return constraint_force(history, built, names.nodes_of(node_or_group(history)), history.text("group"));
+  return constraint_force(history, built, names.nodes_of({{history.table}, {}, history.group}), history.group->name);
 }
 
-void add_envelopes(const Values& output, BuiltCase& built) {
+void add_envelopes(const CaseOutput& output, BuiltCase& built) {
   const Space space = built.model.space;
   const std::vector<SectionWord> words = section_words(space);
   Names used("beam");
-  for (const Values& table : output.tables("beam_envelope")) {
-    used.add(table, "beam");
-    const std::vector<const BeamLine*> lines = lines_of(table, built);
+  for (const CaseEnvelope& asked : output.envelopes) {
+    used.add(asked.beam);
+    const std::vector<const BeamLine*> lines = lines_of(asked.beam, built);
     for (std::size_t k = 0; k < lines.size(); ++k) {
       EnvelopeRequest envelope;
       envelope.beam = lines.size() == 1 ? lines[k]->name : fmt::format("{}, line {}", lines[k]->name, k + 1);
       for (const SectionWord& word : words) envelope.components.emplace_back(word.word);
       const std::vector<Stretch> all = stretches(built.model, *lines[k]);
-      const int each = std::max(1, static_cast<int>(std::ceil(table.integer("sections") / static_cast<double>(all.size()))));
+      const int each = std::max(1, static_cast<int>(std::ceil(asked.sections / static_cast<double>(all.size()))));
       for (const Stretch& stretch : all)
         for (int i = 0; i <= each; ++i) {
           const double share = static_cast<double>(i) / each;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "uplift/base/text.h"
 #include "uplift/elements/discrete.h"
@@ -224,28 +223,6 @@ void add_structure(const Case& read, ModelBuilder& builder, CaseNames& names, co
   add_masses(*read.input, builder, names, tuned);
   add_elements(read.values, builder, names);
   add_supports(read, builder, names, at_rest);
-}
-
-BulkDamping bulk_damping(const Values& damping) {
-  BulkDamping made{damping.number("alpha"), damping.number("beta"), damping.numbers("modal"), damping.integer("modes")};
-  if (made.modal_count == 0) made.modal_count = static_cast<int>(made.modal.size());
-  const std::vector<Values>& pairs = damping.tables("rayleigh");
-  if (pairs.size() > 2) fail(damping, "rayleigh", "one or two pairs of frequency and ratio", fmt::format("{}", pairs.size()));
-  if (!pairs.empty() && (made.alpha > 0 || made.beta > 0)) fail(damping, "rayleigh", "either rayleigh or alpha and beta", "both");
-  // ratio(w) = alpha/(2 w) + beta w/2
-  const auto omega = [](const Values& pair) { return 2 * std::numbers::pi * pair.number("frequency"); };
-  if (pairs.size() == 1) made.beta = 2 * pairs[0].number("ratio") / omega(pairs[0]);
-  if (pairs.size() == 2) {
-    const double w1 = omega(pairs[0]), w2 = omega(pairs[1]), r1 = pairs[0].number("ratio"), r2 = pairs[1].number("ratio");
-    if (w1 == w2)
-      fail(pairs[1], "frequency", "a frequency that differs from the first", fmt::format("{} Hz again", pairs[1].number("frequency")));
-    made.beta = 2 * (r2 * w2 - r1 * w1) / (w2 * w2 - w1 * w1);
-    made.alpha = 2 * w1 * r1 - made.beta * w1 * w1;
-    if (made.alpha < 0 || made.beta < 0)
-      fail(damping, "rayleigh", "two pairs that give no negative factor",
-           fmt::format("alpha = {:.4g} 1/s, beta = {:.4g} s", made.alpha, made.beta));
-  }
-  return made;
 }
 
 }  // namespace uplift

@@ -78,7 +78,6 @@ bool any_released(const CaseInput& input);
 void add_loads(const CaseInput& input, ModelBuilder& builder, const CaseNames& names);
 /// Initial displacements and velocities of the free unknowns; after the model is made.
 void add_initial(const CaseInput& input, const CaseNames& names, BuiltCase& built);
-BulkDamping bulk_damping(const Values& damping);
 
 /// Joint points of an interface with its lower nodes; with an elastic bed (unless `rigid_ground`) these are made here.
 struct Joint {

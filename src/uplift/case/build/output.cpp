@@ -147,14 +147,14 @@ std::vector<PointQuantity> point_quantities(Space space) {
 
 /// The entry with this word; InputError with the list and the nearest word when there is none.
 template <class Table>
-auto find_quantity(const Table& table, const Values& history, std::string_view of) {
-  const std::string& word = history.text("quantity");
+auto find_quantity(const Table& table, const CaseHistory& history, std::string_view of) {
+  const std::string& word = history.quantity.name;
   std::vector<std::string> words;
   for (const auto& entry : table) {
     if (entry.word == word) return entry;
     words.emplace_back(entry.word);
   }
-  fail(history, "quantity", fmt::format("a quantity of {}: {}", of, fmt::join(words, ", ")), "\"" + word + "\"", nearest_name(word, words));
+  fail(history.quantity, fmt::format("a quantity of {}: {}", of, fmt::join(words, ", ")), "\"" + word + "\"", nearest_name(word, words));
 }
 
 Request make(Column kind, std::string name, std::string_view unit) {
@@ -178,15 +178,15 @@ void add_node(const Model& model, int node, std::vector<std::string_view> words,
       requests.push_back(node_request(model, node, quantity));
 }
 
-Request point_request(const Values& history, const Model& model, int interface, std::string name) {
+Request point_request(const CaseHistory& history, const Model& model, int interface, std::string name) {
   const Interface& joint = model.interfaces[interface];
-  const int point = history.integer("point");
+  const int point = *history.point;
   if (point > joint.batch.points)
     fail(history, "point", fmt::format("a point of \"{}\", from 1 to {}", joint.name, joint.batch.points), fmt::format("{}", point));
   const PointQuantity quantity = find_quantity(point_quantities(model.space), history, "an interface point");
   if (quantity.tangent >= 0 && joint.batch.components == 1)
-    fail(history, "quantity", fmt::format("a normal quantity: \"{}\" has no tangential part", joint.name),
-         "\"" + history.text("quantity") + "\"");
+    fail(history.quantity, fmt::format("a normal quantity: \"{}\" has no tangential part", joint.name),
+         "\"" + history.quantity.name + "\"");
   if (name.empty()) name = fmt::format("{}.{}.{}", joint.name, point, quantity.word);
   const bool force = joint.footprint && quantity.unit == "Pa";  // the point of a foundation stands for its whole area
   Request request = make(quantity.kind, std::move(name), force ? "N" : quantity.unit);
@@ -197,8 +197,7 @@ Request point_request(const Values& history, const Model& model, int interface, 
 }
 
 /// The node nearest to a place; of nodes at the same place (the sides of an interface) the first, that of the lower side.
-int nearest_node(const Values& table, const std::string& what, BuiltCase& built) {
-  const Place place = vector_of(table, "at", built.model.space);
+int nearest_node(const Place& place, const std::string& what, BuiltCase& built) {
   int nearest = -1;
   const auto distance = [&](int node) { return (built.model.nodes[static_cast<std::size_t>(node)].position - place).norm(); };
   for (int node = 0; node < static_cast<int>(built.model.nodes.size()); ++node)
@@ -209,20 +208,20 @@ int nearest_node(const Values& table, const std::string& what, BuiltCase& built)
   return nearest;
 }
 
-Request asked_request(const Values& history, const Case& read, BuiltCase& built, const CaseNames& names, const Names& nodes,
+Request asked_request(const CaseHistory& history, const Case& read, BuiltCase& built, const CaseNames& names, const Names& nodes,
                       const Names& interfaces) {
-  const std::string name = history.has("name") ? history.text("name") : "";
-  if (history.has("beam") || history.has("level") || history.has("group")) return force_request(history, built, names);
-  const int given = history.has("node") + history.has("at") + history.has("interface");
+  const std::string name = history.name ? history.name->name : "";
+  if (history.beam || history.level || history.group) return force_request(history, built, names);
+  const int given = history.node.has_value() + history.at.has_value() + history.interface.has_value();
   if (given != 1)
     fail(history, "", "exactly one of node, at, interface, beam, level and group", given == 0 ? "none" : fmt::format("{}", given));
-  if (!history.has("interface")) {
-    const int node = asked_node(history, history.text("quantity"), nodes, built);
-    if (history.has("below") || is_constraint_force(history.text("quantity"))) return force_request(history, built, names, node);
+  if (!history.interface) {
+    const int node = asked_node(history, history.quantity.name, nodes, built);
+    if (history.below || is_constraint_force(history.quantity.name)) return force_request(history, built, names, node);
     return node_request(built.model, node, find_quantity(node_quantities(built.model.space), history, "a node"), name);
   }
-  const int interface = interfaces.find(history, "interface");
-  if (history.has("point")) return point_request(history, built.model, interface, name);
+  const int interface = interfaces.find(*history.interface);
+  if (history.point) return point_request(history, built.model, interface, name);
   const Interface& joint = built.model.interfaces[interface];
   const std::string owner = joint.footprint ? "the foundation " + in_quotes(joint.name) : "an interface";
   const InterfaceQuantity quantity =
@@ -240,11 +239,11 @@ bool moves(const Model& model, int full_unknown) {
                      [&](const PrescribedMotion& motion) { return motion.shape[full_unknown] != 0; });
 }
 
-int asked_node(const Values& table, const std::string& what, const Names& nodes, BuiltCase& built) {
-  if (table.has("node") == table.has("at")) fail(table, "", "exactly one of node and at", table.has("at") ? "both" : "none");
-  if (table.has("at")) return nearest_node(table, what, built);
-  const int node = built.model.find_node(table.text("node"));
-  return node < 0 ? nodes.find(table, "node") : node;  // which says what is near
+int asked_node(const NodeAsked& asked, const std::string& what, const Names& nodes, BuiltCase& built) {
+  if (asked.node.has_value() == asked.at.has_value()) fail(asked, "", "exactly one of node and at", asked.at ? "both" : "none");
+  if (asked.at) return nearest_node(*asked.at, what, built);
+  const int node = built.model.find_node(asked.node->name);
+  return node < 0 ? nodes.find(*asked.node) : node;  // which says what is near
 }
 
 void check_columns(const Values& table, std::string_view key, const std::vector<Request>& requests) {
@@ -254,10 +253,10 @@ void check_columns(const Values& table, std::string_view key, const std::vector<
 }
 
 void add_requests(const Case& read, const CaseNames& names, BuiltCase& built) {
-  const Values& output = read.values.table("output");
+  const CaseOutput& output = read.input->output;
   std::vector<Request>& requests = built.plan.requests;
   const Model& model = built.model;
-  if (output.flag("automatic")) {
+  if (output.automatic) {
     const bool plane = model.space.dimension == 2;
     std::vector<std::string_view> top{"ux", "vx", "uy"}, base{"ux", "uy", "rz", "vy", "vrz"}, base_too{"rz", "vy", "vrz"};
     if (!plane)
@@ -278,18 +277,18 @@ void add_requests(const Case& read, const CaseNames& names, BuiltCase& built) {
   for (const Node& node : model.nodes) nodes.add(node.name, {}, {});
   for (const Interface& interface : model.interfaces) interfaces.add(interface.name, {}, {});
   for (const Request& request : requests) columns.add(request.name, {}, {});
-  for (const Values& history : output.tables("history")) {
-    if (history.has("name")) check_name(history.text("name"), "the column", history.where("name"), history.path("name"));
+  for (const CaseHistory& history : output.histories) {
+    if (history.name) check_name(history.name->name, "the column", history.name->where(), history.name->path());
     Request request = asked_request(history, read, built, names, nodes, interfaces);
     if (!has_quantity(built, request)) continue;
     const bool there = std::any_of(requests.begin(), requests.end(), [&](const Request& other) { return other.name == request.name; });
-    if (there && !history.has("name")) continue;  // one of the automatic ones
+    if (there && !history.name) continue;  // one of the automatic ones
     if (request.name == "time") fail(history, "name", "a name other than that of the first column", in_quotes(request.name));
     columns.add(request.name, history.where("name"), history.path("name"));
     requests.push_back(std::move(request));
   }
   add_envelopes(output, built);
-  if (output.flag("energies")) {
+  if (output.energies) {
     for (const InterfaceQuantity& quantity : energy_quantities)
       requests.push_back(make(quantity.kind, fmt::format("energy.{}", quantity.word), quantity.unit));
     if (PlasticBulk(model).any()) requests.push_back(make(Column::plastic, "energy.plastic", "J"));

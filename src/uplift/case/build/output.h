@@ -1,6 +1,7 @@
 #pragma once
 #include "uplift/case/build/names.h"
 #include "uplift/case/case.h"
+#include "uplift/case/schema/output_sections.h"
 
 namespace uplift {
 
@@ -11,9 +12,7 @@ void add_requests(const Case&, const CaseNames& names, BuiltCase&);
 /// The floors whose spectra the case asks for. Sets plan.floors and plan.floor_bands; uses the plan's stages.
 void add_floors(const Case&, BuiltCase&);
 /// The node of `node`, or the one nearest to `at`, which is noted for `what`; InputError when neither or both are given.
-int asked_node(const Values& table, const std::string& what, const Names& nodes, BuiltCase& built);
-/// Frequencies of a key [Hz]; InputError unless they are > 0 and ascending.
-std::vector<double> ascending(const Values& table, std::string_view key);
+int asked_node(const NodeAsked& asked, const std::string& what, const Names& nodes, BuiltCase& built);
 /// Throws InputError when a list of texts names a column that there is not.
 void check_columns(const Values& table, std::string_view key, const std::vector<Request>& requests);
 /// True when the full unknown can move: it follows a free unknown or a prescribed motion.

@@ -9,6 +9,6 @@ namespace uplift {
 std::vector<Stage> stages_of(const Case& read, const RunSpec& spec);
 
 /// Released supports do not come back, and the second order begins with the state that they have borne. Throws InputError.
-void check_release(const Values& root, const std::vector<Stage>& stages);
+void check_release(const std::vector<CaseStage>& tables, const std::vector<Stage>& stages);
 
 }  // namespace uplift

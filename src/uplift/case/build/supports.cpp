@@ -80,8 +80,8 @@ void add_supports(const Case& read, ModelBuilder& builder, const CaseNames& name
   for (const CaseMotion& motion : read.input->motions) {
     const std::vector<int> nodes = names.nodes_of(motion.of);
     const Dof dof = dof_of(motion.direction, names.space, motion.of.node.has_value());
-    const std::vector<Values>& stages = read.values.tables("stage");
-    if (!motion.function && !stages.empty() && stages.front().text("type") != "static")
+    const std::vector<CaseStage>& stages = read.input->stages;
+    if (!motion.function && !stages.empty() && !stages.front().statics)
       fail(motion, "function", "the name of a function, or a static stage first, which applies a motion without a function", "neither");
     auto function = names.function(motion.function, motion.turns ? std::nullopt : std::optional(MotionKind::displacement));
     builder.prescribe(nodes, dof, scaled(amplitude_of(motion, names), std::move(function)), motion.name, motion.where());

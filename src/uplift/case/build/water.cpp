@@ -36,10 +36,10 @@ std::string note_of_water(const InterfacePart& part) {
       part.name, format_quantity(force, "N"), part.joint.facts.area, format_quantity(most, "Pa"));
 }
 
-void check_second_order_water(const Values& root) {
-  for (const Values& stage : root.tables("stage")) {
-    if (!stage.flag("p_delta")) continue;
-    for (const Values& interface : root.tables("interface")) {
+void check_second_order_water(const Case& read) {
+  for (const CaseStage& stage : read.input->stages) {
+    if (!stage.p_delta) continue;
+    for (const Values& interface : read.values.tables("interface")) {
       const Values* footing = interface.has("water") ? table_if(interface, "footing") : nullptr;
       if (!footing || !footing->has("offset")) continue;
       fail(stage, "p_delta",

@@ -10,6 +10,6 @@ void set_water(const Values& interface, std::vector<JointPoint>& points, const C
 std::string note_of_water(const InterfacePart& part);
 /// InputError for P-delta with water under a footing whose body does not lie in the joint: the geometric stiffness of the arm between them
 /// contains the forces of the contact, but not the thrust of the water.
-void check_second_order_water(const Values& root);
+void check_second_order_water(const Case& read);
 
 }  // namespace uplift

@@ -33,6 +33,10 @@ CaseInput case_input(const Values& root, const Mesh* mesh) {
   made.functions = all(root, "function", case_function);
   made.loads = all(root, "load", case_load, space);
   made.initial = all(root, "initial", case_initial, space);
+  made.stages = all(root, "stage", case_stage);
+  made.energy = case_energy(root.table("energy"));
+  made.limits = case_limits(root.table("limits"));
+  made.output = case_output(root.table("output"), space);
   return made;
 }
 

@@ -1,4 +1,6 @@
 #pragma once
+#include "uplift/case/schema/analysis_sections.h"
+#include "uplift/case/schema/output_sections.h"
 #include "uplift/case/schema/structure_sections.h"
 
 namespace uplift {
@@ -18,6 +20,10 @@ struct CaseInput {
   std::vector<CaseFunction> functions;
   std::vector<CaseLoad> loads;
   std::vector<CaseInitial> initial;
+  std::vector<CaseStage> stages;
+  CaseEnergy energy;
+  CaseLimits limits;
+  CaseOutput output;
 };
 
 /// Plane or space: as the mesh, else as the first node. Throws InputError.

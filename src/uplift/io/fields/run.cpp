@@ -16,11 +16,6 @@ namespace {
 constexpr long usual_frames = 100;
 constexpr std::int64_t most_vtu = 200'000'000;  // bytes: beyond, the mesh in every file and base64 cost too much
 
-const Values* fields_of(const Case& read) {
-  const Values& output = read.values.table("output");
-  return output.has("fields") ? &output.table("fields") : nullptr;
-}
-
 long steps_of(const Stage& stage) {
   return std::max(1L, std::lround(stage.duration / stage.step));
 }
@@ -33,16 +28,16 @@ bool is_dynamic(const RunPlan& plan, std::size_t stage) {
 }
 
 /// Every how many steps; 0: not at all.
-long every_of(const Values& fields, const RunPlan& plan) {
-  if (fields.has("every")) return fields.integer("every");
-  if (fields.flag("events")) return 0;
+long every_of(const CaseFields& fields, const RunPlan& plan) {
+  if (fields.every) return *fields.every;
+  if (fields.events) return 0;
   long steps = 0;
   for (const Stage& stage : plan.stages)
     if (stage.type == Stage::Type::dynamics) steps += steps_of(stage);
   return std::max(1L, (steps + usual_frames - 1) / usual_frames);
 }
 
-long frames_of(const Values& fields, const RunPlan& plan) {
+long frames_of(const CaseFields& fields, const RunPlan& plan) {
   const long every = every_of(fields, plan);
   long frames = 0;
   bool moving = false;
@@ -53,25 +48,25 @@ long frames_of(const Values& fields, const RunPlan& plan) {
     frames += every > 0 ? (steps_of(plan.stages[s]) + every - 1) / every : 1;
     moving = true;
   }
-  return frames + (fields.flag("events") && moving ? 3 : 0);
+  return frames + (fields.events && moving ? 3 : 0);
 }
 
-FieldPrecision precision_of(const Values& fields) {
-  return fields.text("precision") == "float32" ? FieldPrecision::float32 : FieldPrecision::float64;
+FieldPrecision precision_of(const CaseFields& fields) {
+  return fields.float32 ? FieldPrecision::float32 : FieldPrecision::float64;
 }
 
-FieldForecast forecast(const Values& fields, const RunFrames& frames, const RunPlan& plan) {
+FieldForecast forecast(const CaseFields& fields, const RunFrames& frames, const RunPlan& plan) {
   const FieldPrecision precision = precision_of(fields);
   const auto of = [&](FieldFormat format) {
     return FieldForecast{format, frames_of(fields, plan), size_per_frame(format, frames.blocks(), frames.empty(), precision)};
   };
-  if (fields.has("format")) return of(fields.text("format") == "vtu" ? FieldFormat::vtu : FieldFormat::xdmf);
+  if (fields.format) return of(*fields.format == CaseFields::Format::vtu ? FieldFormat::vtu : FieldFormat::xdmf);
   const FieldForecast vtu = of(FieldFormat::vtu);
   return vtu.bytes() <= most_vtu ? vtu : of(FieldFormat::xdmf);
 }
 
 /// The disk must have room before the run starts, not only hours later.
-void check_room(const Values& fields, std::int64_t bytes, const std::string& folder) {
+void check_room(const CaseFields& fields, std::int64_t bytes, const std::string& folder) {
   std::error_code error;
   const std::filesystem::space_info disk = std::filesystem::space(folder, error);
   if (!error && disk.available < static_cast<std::uintmax_t>(bytes))
@@ -82,20 +77,20 @@ void check_room(const Values& fields, std::int64_t bytes, const std::string& fol
 }  // namespace
 
 std::optional<FieldForecast> field_forecast(const Case& read, const BuiltCase& built) {
-  const Values* fields = fields_of(read);
+  const std::optional<CaseFields>& fields = read.input->output.fields;
   if (!fields) return std::nullopt;
   return forecast(*fields, RunFrames(*fields, read, built), built.plan);
 }
 
 FieldRun::FieldRun(const Case& read, const BuiltCase& built, ResultFolder& folder) : plan_(built.plan), folder_(folder) {
-  const Values& fields = *fields_of(read);
+  const CaseFields& fields = *read.input->output.fields;
   frames_ = std::make_unique<const RunFrames>(fields, read, built);
   every_ = every_of(fields, plan_);
-  events_ = fields.flag("events");
+  events_ = fields.events;
   const FieldForecast wanted = forecast(fields, *frames_, plan_);
   const std::string stem = "fields/" + plan_.name, data = folder.place(stem + ".h5");
   // the journal of a run with checkpoints holds every frame once more, in float64
-  const int times = !read.values.table("output").has("checkpoint") ? 1 : precision_of(fields) == FieldPrecision::float32 ? 3 : 2;
+  const int times = !read.input->output.checkpoint ? 1 : precision_of(fields) == FieldPrecision::float32 ? 3 : 2;
   check_room(fields, times * wanted.bytes(), std::filesystem::path(data).parent_path().string());
   if (wanted.format == FieldFormat::vtu)
     vtu_.emplace(stem, frames_->blocks(), precision_of(fields), into(folder));

@@ -8,7 +8,6 @@
 
 #include "uplift/base/text.h"
 #include "uplift/case/mesh/mesh.h"
-#include "uplift/case/schema/case_input.h"
 #include "uplift/elements/element_entry.h"
 
 namespace uplift {
@@ -23,24 +22,24 @@ FieldValues field(std::string_view name, std::string_view unit, FieldKind kind) 
   return {std::string(name), std::string(unit), kind, {}};
 }
 
-[[noreturn]] void fail(const Values& fields, std::string_view key, const std::vector<std::string>& known, const std::string& found) {
+[[noreturn]] void fail(const CaseFields& fields, std::string_view key, const std::vector<std::string>& known, const std::string& found) {
   std::vector<std::string> quoted;
   for (const std::string& name : known) quoted.push_back(in_quotes(name));
   throw InputError(fields.where(key), fields.path(key), listed(quoted), in_quotes(found), nearest_name(found, known));
 }
 
-const Case& with_mesh(const Values& fields, const Case& read) {
+const Case& with_mesh(const CaseFields& fields, const Case& read) {
   if (!read.mesh) throw InputError(fields.where(), fields.path(), "a [mesh], on which fields are written", "none");
   return read;
 }
 
 /// Groups with a solid or a beam that are wanted, in this order.
-std::vector<std::string> wanted_groups(const Values& fields, const Case& read) {
+std::vector<std::string> wanted_groups(const CaseFields& fields, const Case& read) {
   std::vector<std::string> known;
   for (const Values* solid : element_tables(read.values, ElementPlace::cells)) known.push_back(solid->text("group"));
   for (const Values* beam : element_tables(read.values, ElementPlace::lines))
     if (beam->has("group")) known.push_back(beam->text("group"));
-  const std::vector<std::string> asked = fields.has("groups") ? fields.texts("groups") : known;
+  const std::vector<std::string> asked = fields.groups.value_or(known);
   for (const std::string& group : asked)
     if (std::ranges::find(known, group) == known.end()) fail(fields, "groups", known, group);
   if (asked.empty())
@@ -71,19 +70,19 @@ std::vector<std::vector<const Element*>> elements_of(const CaseSolids& solids, c
 }
 
 /// The quantities that are asked for are those of every run or outputs of its solids.
-void check_quantities(const Values& fields, const std::vector<std::vector<const Element*>>& solids) {
+void check_quantities(const CaseFields& fields, const std::vector<std::vector<const Element*>>& solids) {
   std::vector<std::string> known{"displacement", "velocity", "acceleration", "stress", "section_forces"};
   for (const std::vector<const Element*>& solid : solids)
     for (const ElementOutput& output : solid.front()->outputs())
       if (std::ranges::find(known, output.name) == known.end()) known.push_back(output.name);
-  for (const std::string& quantity : fields.texts("quantities"))
+  for (const std::string& quantity : fields.quantities)
     if (std::ranges::find(known, quantity) == known.end()) fail(fields, "quantities", known, quantity);
 }
 
 }  // namespace
 
-RunFrames::RunFrames(const Values& fields, const Case& read, const BuiltCase& built)
-    : model_(&built.model), quantities_(fields.texts("quantities")), interfaces_(with_mesh(fields, read), built) {
+RunFrames::RunFrames(const CaseFields& fields, const Case& read, const BuiltCase& built)
+    : model_(&built.model), quantities_(fields.quantities), interfaces_(with_mesh(fields, read), built) {
   const CaseSolids solids(read.values, *read.mesh);
   const Mesh& mesh = solids.mesh();
   const std::vector<std::vector<const Element*>> elements = elements_of(solids, *model_);

@@ -7,6 +7,7 @@
 
 #include "uplift/case/case.h"
 #include "uplift/case/mesh/mesh.h"
+#include "uplift/case/schema/case_input.h"
 #include "uplift/io/fields/fields.h"
 #include "uplift/run/force_rows.h"
 #include "uplift/run/interface_viewer.h"
@@ -71,7 +72,7 @@ class BeamFrames {
 class RunFrames {
  public:
   /// `fields` is [output.fields]. Throws InputError: no mesh, quantities and groups that are not there.
-  RunFrames(const Values& fields, const Case& read, const BuiltCase& built);
+  RunFrames(const CaseFields& fields, const Case& read, const BuiltCase& built);
   const std::vector<FieldMesh>& blocks() const { return blocks_; }
   /// Names and kinds, and section forces where there are any; no other values.
   FieldFrame empty(const std::vector<double>& section_forces = {}) const;
