@@ -31,10 +31,10 @@ const Values& behaviour_of(const InterfacePart& part, const RunSpec& spec) {
     if (spec.law && spec.interface == part.name)
       throw InputError(spec.law->where(), spec.law->path(), "the law of an interface",
                        in_quotes(part.name) + ", a foundation, which has a model");
-    return part.table->part("model");
+    return *part.behaviour;
   }
   const bool replaced = spec.law && (spec.interface.empty() || spec.interface == part.name);
-  return replaced ? *spec.law : part.table->part("law");
+  return replaced ? *spec.law : *part.behaviour;
 }
 
 /// With the numbers of the soil.
@@ -78,8 +78,8 @@ void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, Mo
     if (made.law) joint.facts.tension = made.law->scales().strength;
     built.facts.push_back(std::move(joint.facts));
     built.behaviours.push_back(&behaviour);
-    if (auto dashpot = part.footprint ? radiation_dashpot(*part.table, *part.footprint, names) : nullptr)
-      builder.add_element(std::move(dashpot), part.table->table("soil").where("radiation"));
+    if (auto dashpot = part.foundation ? radiation_dashpot(*part.foundation, *part.footprint, names) : nullptr)
+      builder.add_element(std::move(dashpot), part.foundation->soil->where("radiation"));
     builder.add_interface(std::move(made), part.table->where());
   }
   if (spec.law && std::ranges::all_of(parts, [](const InterfacePart& part) { return part.footprint.has_value(); }))
@@ -154,7 +154,7 @@ Model make_model(const Case& read, const RunSpec& spec, const std::vector<double
   names.share = newmark_share(built.plan.stages);
   add_functions(read, names);
   add_structure(read, builder, names, tuned, dynamic != nullptr);
-  add_ties(root, builder, names);
+  add_ties(*read.input, builder, names);
   add_faces(root, builder, names);
   if (!dynamic)
     add_free_field(root, built.plan.stages, spec.damping ? bulk_damping(*spec.damping) : BulkDamping{}, bulk_solver(read), builder, names);

@@ -30,18 +30,18 @@ void add_links(const Values& root, const Model& model, std::vector<DrawnParts::L
     }
 }
 
-void add_bodies(const Values& root, const Model& model, std::vector<DrawnParts::Body>& bodies) {
+void add_bodies(const CaseInput& input, const Model& model, std::vector<DrawnParts::Body>& bodies) {
   for (std::size_t k = 0; k < model.interfaces.size(); ++k) {
     const std::string& name = model.interfaces[k].name;
-    for (const Values& interface : root.tables("interface")) {
-      const Values* footing = interface.text("name") == name ? table_if(interface, "footing") : nullptr;
+    for (const CaseInterface& interface : input.interfaces) {
+      const CaseFooting* footing = interface.name.name == name ? interface.footing() : nullptr;
       if (footing == nullptr) continue;
-      const bool grid = footing->text("rule") == "nodal" && model.space.dimension == 3;
-      bodies.push_back({k, model.find_node(footing->text("body")), false, grid ? footing->integer("points") : 0,
-                        grid ? footing->integer("points_across") : 0});
+      const bool grid = footing->rule == FootingRule::nodal && model.space.dimension == 3;
+      bodies.push_back(
+          {k, model.find_node(footing->body.name), false, grid ? footing->points : 0, grid ? footing->points_across.value_or(0) : 0});
     }
-    for (const Values& foundation : root.tables("foundation"))
-      if (foundation.text("name") == name) bodies.push_back({k, model.find_node(foundation.text("body")), true, 0, 0});
+    for (const CaseFoundation& foundation : input.foundations)
+      if (foundation.name.name == name) bodies.push_back({k, model.find_node(foundation.body.name), true, 0, 0});
   }
 }
 
@@ -81,7 +81,7 @@ DrawnParts drawn_parts(const Case& read, const BuiltCase& built) {
   add_links(root, model, parts.links);
   for (const Values& face : root.tables("absorbing"))
     parts.absorbing.push_back({face.text("group"), face.flag("free_field"), face.has("incident")});
-  add_bodies(root, model, parts.bodies);
+  add_bodies(*read.input, model, parts.bodies);
   return parts;
 }
 

@@ -36,38 +36,41 @@ void check_factors_of_records(const Raw& raw, const Case& read) {
   }
 }
 
-void fill_input(const Raw& raw, Case& read) {
-  read.input = std::make_shared<const CaseInput>(case_input(read.values, read.mesh ? &read.mesh->mesh : nullptr));
-  check_factors_of_records(raw, read);
+/// The tables as structs, and between them the mesh unless it is there already.
+void fill_input(bool same_mesh, const MeshReader& read_mesh, Case& read) {
+  auto input = std::make_shared<CaseInput>(input_of_mesh(read.values));
+  read.input = input;
+  if (!same_mesh) read.mesh = mesh_of_case(read, read_mesh);
+  add_rest_of_input(read.values, read.mesh ? &read.mesh->mesh : nullptr, *input);
 }
 
 }  // namespace
 
 Case check_case(const Raw& raw, const std::string& file, const MeshReader& read_mesh) {
   Case read{check(raw, case_section()), file, nullptr, {}, nullptr};
-  read.mesh = mesh_of_case(read.values, file, read_mesh);
+  fill_input(false, read_mesh, read);
   read.records = read_records(read.values);
-  fill_input(raw, read);
+  check_factors_of_records(raw, read);
   return read;
 }
 
 Case check_case_like(const Case& like, bool same_mesh, const Raw& raw, const MeshReader& read_mesh) {
   Case read{check(raw, case_section()), like.file, like.mesh, like.records, nullptr};
-  if (!same_mesh) read.mesh = mesh_of_case(read.values, like.file, read_mesh);
-  fill_input(raw, read);
+  fill_input(same_mesh, read_mesh, read);
+  check_factors_of_records(raw, read);
   return read;
 }
 
 std::vector<std::string> input_files(const Case& read) {
   std::vector<std::string> files;
-  const auto add = [&](const Values& table) {
-    const std::filesystem::path path = std::filesystem::path(read.file).parent_path() / table.text("file");
-    if (!std::filesystem::is_regular_file(path)) fail(table, "file", "a file", escaped(path.string()));
+  const auto add = [&](const NameUsed& file) {
+    const std::filesystem::path path = std::filesystem::path(read.file).parent_path() / file.name;
+    if (!std::filesystem::is_regular_file(path)) fail(file, "a file", escaped(path.string()));
     files.push_back(path.lexically_normal().string());
   };
   for (const CaseFunction& function : read.input->functions)
-    if (function.shape->items().contains("file") && function.shape->has("file")) add(*function.shape);
-  if (const Values* mesh = table_if(read.values, "mesh"); mesh && mesh->has("file")) add(*mesh);
+    if (function.shape->items().contains("file") && function.shape->has("file")) add(name_used(*function.shape, "file"));
+  if (read.input->mesh && read.input->mesh->file) add(*read.input->mesh->file);
   for (const Values* solid : element_tables(read.values, ElementPlace::cells))
     for (const char* key : {"law", "plasticity"})
       if (solid->items().contains(key) && solid->has(key) && solid->part(key).items().contains("library")) {

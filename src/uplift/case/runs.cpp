@@ -14,8 +14,8 @@
 namespace uplift {
 namespace {
 
-bool may_open(const Values& root) {
-  return !root.tables("interface").empty() || !root.tables("foundation").empty();
+bool may_open(const CaseInput& input) {
+  return !input.interfaces.empty() || !input.foundations.empty();
 }
 
 const Values* part_if(const Values& table, std::string_view key) {
@@ -154,7 +154,7 @@ std::vector<RunSpec> runs_of_case(const Case& read) {
   spec.name = "run";
   spec.label = "as in the case";
   std::vector<RunSpec> runs{spec};
-  if (read.values.flag("bonded") && may_open(read.values)) runs.push_back(bonded_run(read));
+  if (read.values.flag("bonded") && may_open(*read.input)) runs.push_back(bonded_run(read));
   return runs;
 }
 
@@ -193,7 +193,7 @@ Comparison comparison_of_case(const Case& read) {
     names.add(variant, "name");
     plain.push_back(variant_run(read, variant));
   }
-  if (root.flag("bonded") && may_open(root)) {
+  if (root.flag("bonded") && may_open(*read.input)) {
     names.add("bonded", root.where("bonded"), "variant.name");
     plain.push_back(bonded_run(read));
   }

@@ -22,11 +22,11 @@ bool has_number(const Values& part, std::string_view key) {
 }
 
 /// With the numbers of its soil.
-Values law_of(const Values& interface) {
-  const Values& law = interface.part("law");
-  const Values* footing = interface.has("footing") ? &interface.table("footing") : nullptr;
-  const auto numbers = law_on_soil(law, soil_of(interface).get(), footing && footing->has("length") ? 3 : 2);
-  return numbers ? *numbers : law;
+Values law_of(const CaseInterface& interface) {
+  const CaseFooting* footing = interface.footing();
+  const auto soil = footing ? soil_of(*footing) : nullptr;
+  const auto numbers = law_on_soil(*interface.law, soil.get(), footing && footing->length ? 3 : 2);
+  return numbers ? *numbers : *interface.law;
 }
 
 std::string law_path(std::size_t interface) {
@@ -38,9 +38,10 @@ bool is_cone(const Values& law) {
 }
 
 /// The contact method that a run of the case takes.
-Values method_values(const Values& root) {
+Values method_values(const Case& read) {
+  const Values& root = read.values;
   if (root.has("method")) return root.part("method");
-  const bool cones = std::ranges::any_of(root.tables("interface"), [](const Values& each) { return is_cone(each.part("law")); });
+  const bool cones = std::ranges::any_of(read.input->interfaces, [](const CaseInterface& each) { return is_cone(*each.law); });
   return check_part(Raw{std::string(standard_method(cones)), root.where(), "method"}, contact_methods());
 }
 
@@ -72,12 +73,12 @@ std::vector<CaseEdit> replaced(const std::string& path, const Values& law, const
 class Planner {
  public:
   explicit Planner(const Case& read)
-      : root_(read.values), input_(*read.input), trust_(root_.table("trust")), method_(method_values(root_)) {}
+      : root_(read.values), input_(*read.input), trust_(root_.table("trust")), method_(method_values(read)) {}
 
   TrustPlan plan() {
     halve_step();
-    if (root_.tables("interface").empty()) {
-      leave_out("interface", root_.tables("foundation").empty()
+    if (input_.interfaces.empty()) {
+      leave_out("interface", input_.foundations.empty()
                                  ? "the case has no interface"
                                  : "a foundation has the stiffness of its ground, which the computation does not choose");
     } else {
@@ -114,9 +115,9 @@ class Planner {
   }
 
   /// A law of a footing on fixed ground is the soil itself.
-  double factor_of(const Values& interface) const {
+  double factor_of(const CaseInterface& interface) const {
     if (trust_.has("stiffness_factor")) return trust_.number("stiffness_factor");
-    return interface.has("footing") && !interface.table("footing").has("bed") ? of_soil : of_joint;
+    return interface.footing() && !interface.footing()->bed ? of_soil : of_joint;
   }
 
   /// The ends of the sweep, then what lies between an end and the case.
@@ -138,7 +139,7 @@ class Planner {
     std::vector<double> factors;
     std::string refusal;
     const auto add_factor = [&](double factor) { return factors.emplace_back(std::pow(factor, power)); };
-    const std::vector<Values>& interfaces = root_.tables("interface");
+    const std::vector<CaseInterface>& interfaces = input_.interfaces;
     for (std::size_t k = 0; k < interfaces.size(); ++k) {
       const Values law = law_of(interfaces[k]);
       const std::vector<std::string_view> keys = stiffness_keys(law);
@@ -149,7 +150,7 @@ class Planner {
         double stiffness[3] = {};
         made->closed_stiffness(3, stiffness);
         if (const double least = made->scales().least_stiffness; by * stiffness[2] <= least)
-          refusal = fmt::format("the law of '{}' needs a stiffness above {:.3g} Pa/m", interfaces[k].text("name"), least);
+          refusal = fmt::format("the law of '{}' needs a stiffness above {:.3g} Pa/m", interfaces[k].name.name, least);
       }
     }
     if (regularises()) {
@@ -175,17 +176,18 @@ class Planner {
   void add_points() {
     std::vector<CaseEdit> edits;
     std::string label;
-    const std::vector<Values>& interfaces = root_.tables("interface");
+    const std::vector<CaseInterface>& interfaces = input_.interfaces;
     for (std::size_t k = 0; k < interfaces.size(); ++k) {
-      if (!interfaces[k].has("footing")) continue;
-      const Values& footing = interfaces[k].table("footing");
-      const bool on_edges = footing.text("rule") == "nodal";
-      for (const char* key : {"points", "points_across"}) {
-        if (!has_number(footing, key)) continue;
-        const std::int64_t points = footing.integer(key), finer = on_edges && points > 1 ? 2 * points - 1 : 2 * points;
+      const CaseFooting* footing = interfaces[k].footing();
+      if (!footing) continue;
+      const bool on_edges = footing->rule == FootingRule::nodal;
+      const auto refine = [&](const char* key, std::int64_t points) {
+        const std::int64_t finer = on_edges && points > 1 ? 2 * points - 1 : 2 * points;
         edits.push_back({fmt::format("interface[{}].footing.{}", k, key), finer});
         label += fmt::format("{}{} instead of {}", label.empty() ? "" : ", ", finer, points);
-      }
+      };
+      refine("points", footing->points);
+      if (footing->points_across) refine("points_across", *footing->points_across);
     }
     if (edits.empty()) return leave_out("points of the footing", "no interface is a footing");
     add("more_points", "points of the footing", label + " points", std::move(edits));
@@ -210,7 +212,7 @@ class Planner {
       return add("other_method", "method", other + " instead of " + method_.type(), {{"method", other}});
     }
     std::vector<CaseEdit> edits;
-    const std::vector<Values>& interfaces = root_.tables("interface");
+    const std::vector<CaseInterface>& interfaces = input_.interfaces;
     std::string label;
     for (std::size_t k = 0; k < interfaces.size(); ++k) {
       const Values law = law_of(interfaces[k]);
@@ -239,33 +241,31 @@ class Planner {
 
   void refine() {
     const double factor = trust_.number("mesh_factor");
-    if (!root_.has("mesh") || !root_.table("mesh").has("soil_box"))
-      return leave_out("mesh", root_.has("mesh") ? "the mesh is a file" : "the case has no mesh");
+    if (!input_.mesh || !input_.mesh->soil_box) return leave_out("mesh", input_.mesh ? "the mesh is a file" : "the case has no mesh");
     if (factor == 1) return leave_out("mesh", "mesh_factor = 1");
-    const Values& box = root_.table("mesh").table("soil_box");
+    const SoilBox& box = *input_.mesh->soil_box;
     std::vector<CaseEdit> edits;
     const std::string path = "mesh.soil_box.";
-    edits.push_back({path + "soil.size", factor * box.table("soil").number("size")});
-    const std::vector<Values>& layers = box.table("soil").tables("layers");
+    edits.push_back({path + "soil.size", factor * box.soil.size});
+    const std::vector<SoilBox::Layer>& layers = box.soil.layers;
     for (std::size_t i = 0; i < layers.size(); ++i)
-      edits.push_back({fmt::format("{}soil.layers[{}].size", path, i), factor * layers[i].number("size")});
-    for (const char* part : {"raft", "block"})
-      if (box.has(part)) edits.push_back({path + part + ".size", factor * box.table(part).number("size")});
+      edits.push_back({fmt::format("{}soil.layers[{}].size", path, i), factor * layers[i].size});
+    if (box.raft.height > 0) edits.push_back({path + "raft.size", factor * box.raft.size});
+    if (box.block.height > 0) edits.push_back({path + "block.size", factor * box.block.size});
     add("finer", "mesh", fmt::format("elements {:g} times as large", factor), std::move(edits));
   }
 
   /// Planes that the mesh ignores: the mesh is moved beside them.
   void move_mesh() {
     const double share = trust_.number("mesh_shift");
-    const std::vector<Values>& interfaces = root_.tables("interface");
-    if (std::ranges::none_of(interfaces, [](const Values& each) { return each.has("cut"); })) return;
+    const std::vector<CaseInterface>& interfaces = input_.interfaces;
+    if (std::ranges::none_of(interfaces, [](const CaseInterface& each) { return each.cut() != nullptr; })) return;
     if (share == 0) return leave_out("place of the mesh", "mesh_shift = 0");
     for (const double by : {share, -share}) {
       std::vector<CaseEdit> edits;
       for (std::size_t k = 0; k < interfaces.size(); ++k)
-        if (interfaces[k].has("cut"))
-          edits.push_back({fmt::format("interface[{}].cut.mesh_shift", k),
-                           std::clamp(interfaces[k].table("cut").number("mesh_shift") + by, -0.45, 0.45)});
+        if (const CaseCut* cut = interfaces[k].cut())
+          edits.push_back({fmt::format("interface[{}].cut.mesh_shift", k), std::clamp(cut->mesh_shift + by, -0.45, 0.45)});
       add(by > 0 ? "mesh_forth" : "mesh_back", "place of the mesh",
           fmt::format("mesh moved {:g} of a cell {} the normal of the cut", share, by > 0 ? "along" : "against"), std::move(edits));
     }

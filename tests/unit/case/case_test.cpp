@@ -11,6 +11,7 @@
 
 #include "tower_case.h"
 #include "uplift/case/build/names.h"
+#include "uplift/case/schema/case_input.h"
 #include "uplift/case/schema/sections.h"
 #include "uplift/io/text/toml.h"
 #include "uplift/model/builder.h"
@@ -244,10 +245,35 @@ TEST(Case, NamesAreCheckedWithTheirPlace) {
 
 TEST(Case, ExactlyOnePlaceOfAnInterface) {
   const std::string text = changed("[interface.law]", "[interface.pairs]\nupper = [\"base\"]\narea = 1\n[interface.law]");
-  const Case file = read("", text);
+  EXPECT_NE(complaint([&] { read("", text); }).find("expected exactly one of footing, pairs, line, surface and cut, found 2"),
+            std::string::npos);
+}
+
+/// Structs hold what their tables say in SI units, and point to them also after the case has moved.
+TEST(Case, StructsOfItsTablesMoveWithTheCase) {
+  Case first =
+      read("[[support]]\nnode = \"top\"\nfixed = [\"ux\"]\nstages = \"static\"\n", changed("force = [0, -1e6]", "force = [0, \"-20 kN\"]"));
+  const Case file = std::move(first);
+  const CaseInput& input = *file.input;
+  ASSERT_EQ(input.loads.size(), 1u);
+  EXPECT_EQ(*input.loads[0].force, Vec3(0, -20e3, 0));
+  EXPECT_FALSE(input.loads[0].function);
+  ASSERT_EQ(input.interfaces.size(), 1u);
+  ASSERT_NE(input.interfaces[0].footing(), nullptr);
+  EXPECT_EQ(input.interfaces[0].footing()->points, 11);
+  EXPECT_EQ(input.interfaces[0].cut(), nullptr);
+  const CaseSupport& support = input.supports.back();
+  EXPECT_TRUE(support.statics_only);
+  EXPECT_EQ(support.of.node->path(), fmt::format("support[{}].node", input.supports.size() - 1));
+  EXPECT_EQ(support.where("stages").line, support.where().line + 3);
+  EXPECT_EQ(input.stages[0].step, std::nullopt);
+  EXPECT_EQ(input.stages[1].step, 1e-3);
+}
+
+TEST(Case, ANodeAndAGroupAreRefusedTogether) {
   EXPECT_NE(complaint([&] {
-              build(file, runs_of_case(file).front());
-            }).find("expected exactly one of footing, pairs, line, surface and cut, found 2"),
+              read("[[support]]\nnode = \"top\"\ngroup = \"raft\"\nfixed = [\"ux\"]\n");
+            }).find("support[1].group: expected either node or group, found both"),
             std::string::npos);
 }
 

@@ -39,17 +39,17 @@ void warn_gaps(const BuiltCase& built, std::vector<std::string>& said) {
 }
 
 void warn_sides_exchanged(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
-  const std::vector<Values>& interfaces = read.values.tables("interface");
-  if (interfaces.size() != 1 || !interfaces.front().has("surface") || !(built.weight < 0)) return;
-  if (interfaces.front().has("water") || !interfaces.front().table("surface").has("lower")) return;  // see warn_floating
-  const Values& surface = interfaces.front().table("surface");
+  const std::vector<CaseInterface>& interfaces = read.input->interfaces;
+  const CaseSurface* surface = interfaces.size() == 1 ? interfaces.front().surface() : nullptr;
+  if (!surface || !(built.weight < 0)) return;
+  if (interfaces.front().water || !surface->group) return;  // see warn_floating
   said.push_back(fmt::format("{}:{}: the dead load of {} pulls the upper side off the lower one: does `lower` name the side that bears?",
-                             surface.where("lower").file, surface.where("lower").line, format_quantity(-built.weight, "N")));
+                             surface->where("lower").file, surface->where("lower").line, format_quantity(-built.weight, "N")));
 }
 
 void warn_floating(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
-  const std::vector<Values>& interfaces = read.values.tables("interface");
-  if (built.weight > 0 || std::ranges::none_of(interfaces, [](const Values& interface) { return interface.has("water"); })) return;
+  const auto wet = [](const CaseInterface& interface) { return interface.water.has_value(); };
+  if (built.weight > 0 || std::ranges::none_of(read.input->interfaces, wet)) return;
   said.push_back(fmt::format("the water pressure exceeds the dead load on \"{}\" by {}: the structure floats", built.facts.front().name,
                              format_quantity(-built.weight, "N")));
 }
@@ -61,16 +61,13 @@ bool states_all_stiffnesses(const Values& model, Space space) {
 void warn_foundations(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
   const auto comes_in = [](const Values& face) { return face.has("incident"); };
   const bool waves = std::ranges::any_of(read.values.tables("absorbing"), comes_in);
-  for (const Values& foundation : read.values.tables("foundation")) {
-    const Values& model = foundation.part("model");
+  for (const CaseFoundation& foundation : read.input->foundations) {
     const std::string place = fmt::format("{}:{}: ", foundation.where().file, foundation.where().line);
-    const Values* soil = table_if(foundation, "soil");
-    const bool radiates = soil != nullptr && soil->flag("radiation");
-    if (soil != nullptr && !radiates && states_all_stiffnesses(model, built.model.space))
-      said.push_back(place + fmt::format("the soil of \"{}\" has no effect: the model states all stiffnesses", foundation.text("name")));
+    if (foundation.soil && !foundation.radiates && states_all_stiffnesses(*foundation.model, built.model.space))
+      said.push_back(place + fmt::format("the soil of \"{}\" has no effect: the model states all stiffnesses", foundation.name.name));
     if (waves)
       said.push_back(place +
-                     fmt::format("the ground under \"{}\" does not move with the incident wave: it stands still", foundation.text("name")));
+                     fmt::format("the ground under \"{}\" does not move with the incident wave: it stands still", foundation.name.name));
     if (built.model.interfaces.size() != 1) continue;
     const MacroElement* ground = as_macro_element(built.model.interfaces.front().law.get());
     if (ground == nullptr || !ground->surfaces().has_bearing()) continue;
@@ -80,7 +77,7 @@ void warn_foundations(const Case& read, const BuiltCase& built, std::vector<std:
                                                               : "hardly any moment or horizontal force is left to it without settlement";
     if (least_reserve * built.weight >= std::min(capacity, service))
       said.push_back(place + fmt::format("the dead load is {}, the capacity of \"{}\" {}: {}", format_quantity(built.weight, "N"),
-                                         foundation.text("name"), format_quantity(built.weight >= capacity ? capacity : service, "N"),
+                                         foundation.name.name, format_quantity(built.weight >= capacity ? capacity : service, "N"),
                                          outcome));
   }
 }
@@ -159,11 +156,12 @@ void warn_inclined_cut(const CaseSolids& solids, const std::vector<CutFace>& fac
 }
 
 /// An outline that goes beyond the cells: only a part of the base is there.
-void warn_outside(const Values& cut, const std::vector<CutFace>& faces, const Interface& interface, std::vector<std::string>& said) {
+void warn_outside(const CaseCut& cut, const std::vector<CutFace>& faces, const Interface& interface, std::vector<std::string>& said) {
   const std::array<std::string, 2> axes{"x", "y"};
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-    if (!cut.has(axes[axis])) continue;
-    const std::vector<double>& limits = cut.numbers(axes[axis]);
+    const std::optional<CaseCut::Range>& range = axis == 0 ? cut.x : cut.y;
+    if (!range) continue;
+    const CaseCut::Range& limits = *range;
     double low = HUGE_VAL, high = -low;
     for (const CutFace& face : faces)
       for (const Vec3& corner : face.corners) {
@@ -199,28 +197,28 @@ void warn_clipped_cut(const Mesh& mesh, const std::vector<CutFace>& faces, const
 }
 
 /// docs/theory/element_jumps.md
-void warn_element_jumps(const Values& cut, const std::vector<CutFace>& faces, const Interface& interface, std::vector<std::string>& said) {
-  if (cut.text("jump") == "linear") return;
+void warn_element_jumps(const CaseCut& cut, const std::vector<CutFace>& faces, const Interface& interface, std::vector<std::string>& said) {
+  if (cut.jump == CaseCut::Jump::linear) return;
   const bool level = std::ranges::all_of(faces, &CutFace::level);
   said.push_back(
       fmt::format("the jump of \"{}\" is {} in each cell, a form of the literature for comparisons: {}{}; the linear jump has none of "
                   "this",
-                  interface.name, cut.text("jump"),
-                  cut.text("jump") == "constant" ? "a base that turns is held by stresses in the cells and locks"
-                                                 : "both sides of a cell have one strain, also where their materials differ",
+                  interface.name, cut.jump_word,
+                  cut.jump == CaseCut::Jump::constant ? "a base that turns is held by stresses in the cells and locks"
+                                                      : "both sides of a cell have one strain, also where their materials differ",
                   level ? "" : ", and on cells that are cut at an angle even uniform stresses are wrong"));
 }
 
 void warn_cuts(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
   if (!read.mesh || read.mesh->cut.empty()) return;
   const CaseSolids solids(read.values, *read.mesh);
-  const std::vector<Values>& tables = read.values.tables("interface");
+  const std::vector<CaseInterface>& tables = read.input->interfaces;
   for (std::size_t t = 0; t < tables.size(); ++t)
     for (const Interface& interface : built.model.interfaces) {
-      if (interface.name != tables[t].text("name") || read.mesh->cut[t].empty()) continue;
-      warn_element_jumps(tables[t].table("cut"), read.mesh->cut[t], interface, said);
+      if (interface.name != tables[t].name.name || read.mesh->cut[t].empty()) continue;
+      warn_element_jumps(*tables[t].cut(), read.mesh->cut[t], interface, said);
       warn_inclined_cut(solids, read.mesh->cut[t], interface, said);
-      warn_outside(tables[t].table("cut"), read.mesh->cut[t], interface, said);
+      warn_outside(*tables[t].cut(), read.mesh->cut[t], interface, said);
       warn_clipped_cut(solids.mesh(), read.mesh->cut[t], interface, said);
     }
 }

@@ -52,8 +52,8 @@ void warn_magnitude(const Values& table, const Magnitude& each, std::vector<std:
 void warn_magnitudes(const Case& read, std::vector<std::string>& said) {
   for (const Magnitude& each : usual)
     for (const Values& table : read.values.tables(each.table)) warn_magnitude(table, each, said);
-  for (const Values& interface : read.values.tables("interface"))
-    if (const Values* water = table_if(interface, "water")) warn_magnitude(*water, water_weight, said);
+  for (const CaseInterface& interface : read.input->interfaces)
+    if (interface.water) warn_magnitude(*interface.water->table, water_weight, said);
 }
 
 /// A density alone makes no mass.

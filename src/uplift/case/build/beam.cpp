@@ -70,11 +70,11 @@ std::vector<std::vector<int>> add_along(const ElementEntry& entry, const Values&
 
 }  // namespace
 
-void add_beams(const Values& root, ModelBuilder& builder, CaseNames& names) {
+void add_beams(const Case& read, ModelBuilder& builder, CaseNames& names) {
   Names beams("beam");
-  BeamCells cells(root, names.solids.get());
+  BeamCells cells(read, names.solids.get());
   for (const ElementEntry* entry : elements_at(ElementPlace::lines)) {
-    for (const Values& beam : root.tables(entry->name)) {
+    for (const Values& beam : read.values.tables(entry->name)) {
       beams.add(beam, "name");
       const int first = builder.num_elements();
       const bool between = first_of_two(beam, "nodes", "group");

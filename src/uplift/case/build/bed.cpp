@@ -37,24 +37,17 @@ double checked_ratio(const Values& soil, const char* side, FootingRule rule, int
 
 }  // namespace
 
-std::unique_ptr<const FootingOnSoil> soil_of(const Values& interface) {
-  const Values* footing = table_if(interface, "footing");
-  const Values* soil = footing ? table_if(*footing, "soil") : nullptr;
-  if (!soil) return nullptr;
-  if (footing->has("bed"))
-    fail(*soil, "", "either soil, which makes the law of the joint the ground, or bed, ground below the joint", "both");
-  if (soil->flag("radiation")) fail(*soil, "radiation", "false: the dashpot of a joint is that of its law (c = \"soil\")", "true");
+std::unique_ptr<const FootingOnSoil> soil_of(const CaseFooting& footing) {
+  if (!footing.soil) return nullptr;
   Footprint footprint;
-  const bool space = footing->has("length");
-  footprint.dimension = space ? 3 : 2;
-  footprint.shape = soil->has("rock_depth") && !space ? Footprint::Shape::strip : Footprint::Shape::rectangle;
-  footprint.width = footing->number("width");
-  footprint.length = footing->number(space ? "length" : "thickness");
-  return std::make_unique<const FootingOnSoil>(footing_on_soil(*soil, footprint));
+  footprint.dimension = footing.length ? 3 : 2;
+  footprint.shape = footing.soil->has("rock_depth") && !footing.length ? Footprint::Shape::strip : Footprint::Shape::rectangle;
+  footprint.width = footing.width;
+  footprint.length = footing.length.value_or(footing.thickness);
+  return std::make_unique<const FootingOnSoil>(footing_on_soil(*footing.soil, footprint));
 }
 
-void spread_soil(const Values& interface, const FootingOnSoil& ground, Footing& footing) {
-  const Values& soil = interface.table("footing").table("soil");
+void spread_soil(const Values& soil, const FootingOnSoil& ground, Footing& footing) {
   const bool space = footing.length > 0;
   const BedOfSoil bed = bed_of_soil(ground, space ? 3 : 2);
   footing.ratio = checked_ratio(soil, "width", footing.rule, footing.points, bed.ratio_width);

@@ -27,23 +27,23 @@ std::vector<Place> corners_of(const Footprint& footprint, Space space, const Joi
 
 }  // namespace
 
-Footprint footprint_of(const Values& foundation, Space space) {
+Footprint footprint_of(const CaseFoundation& foundation, Space space) {
   Footprint made;
-  made.shape = *footprint_shape(foundation.text("shape"));
-  made.width = foundation.number("width");
+  made.shape = foundation.shape;
+  made.width = foundation.width;
   made.dimension = space.dimension;
   const bool disc = made.shape == Footprint::Shape::disc, strip = made.shape == Footprint::Shape::strip;
-  if (disc && foundation.has("length")) fail(foundation, "length", "no length: the width of a disc is its diameter", "one");
+  if (disc && foundation.length) fail(foundation, "length", "no length: the width of a disc is its diameter", "one");
   if (strip && space.dimension == 3) fail(foundation, "shape", "rectangle or disc in space", "strip");
-  if (space.dimension == 3 && !disc && !foundation.has("length")) fail(foundation, "", "the length of a rectangle in space", "none");
-  made.length = disc ? made.width : foundation.has("length") ? foundation.number("length") : 1;
-  const Values* soil = table_if(foundation, "soil");
-  if (soil && !disc && !strip && !foundation.has("length")) fail(foundation, "", "the length of a rectangle on [foundation.soil]", "none");
+  if (space.dimension == 3 && !disc && !foundation.length) fail(foundation, "", "the length of a rectangle in space", "none");
+  made.length = disc ? made.width : foundation.length.value_or(1);
+  const Values* soil = foundation.soil;
+  if (soil && !disc && !strip && !foundation.length) fail(foundation, "", "the length of a rectangle on [foundation.soil]", "none");
   if (soil) made.soil = footing_on_soil(*soil, made);
   return made;
 }
 
-std::unique_ptr<const Element> radiation_dashpot(const Values& foundation, const Footprint& footprint, const CaseNames& names) {
+std::unique_ptr<const Element> radiation_dashpot(const CaseFoundation& foundation, const Footprint& footprint, const CaseNames& names) {
   const std::vector<double> damping = radiation_damping(footprint);
   if (damping.empty()) return nullptr;
   const Space space = names.space;
@@ -51,22 +51,22 @@ std::unique_ptr<const Element> radiation_dashpot(const Values& foundation, const
   const Vec3 along(damping[0], damping[1], plane ? 0 : damping[2]);
   const Vec3 about = plane ? Vec3(0, 0, damping[2]) : Vec3(damping[3], damping[4], damping[5]);
   Vec3 offset = Vec3::Zero();
-  if (foundation.has("offset")) offset = vector_of(foundation, "offset", space);
-  return std::make_unique<PointDashpot>(space, names.node(name_used(foundation, "body")), along, about, offset);
+  if (foundation.offset) offset = foundation.offset->in(space);
+  return std::make_unique<PointDashpot>(space, names.node(foundation.body), along, about, offset);
 }
 
-Joint foundation_joint(const Values& foundation, const Footprint& footprint, const CaseNames& names) {
-  const int body = names.node(name_used(foundation, "body"));
+Joint foundation_joint(const CaseFoundation& foundation, const Footprint& footprint, const CaseNames& names) {
+  const int body = names.node(foundation.body);
   const Space space = names.space;
   JointPoint point;
   point.position = names.positions[static_cast<std::size_t>(body)];
-  if (foundation.has("offset")) point.position += vector_of(foundation, "offset", space);
+  if (foundation.offset) point.position += foundation.offset->in(space);
   point.normal = space.axis(space.up());
   point.area = 1;
   point.upper = {{body, 1.0}};
   point.rigid_upper = true;
   Joint joint{{point}, {}, point.position};
-  joint.facts.name = foundation.text("name");
+  joint.facts.name = foundation.name.name;
   joint.facts.body = names.nodes[body];
   joint.facts.upper = {body};
   joint.facts.area = footprint.area();

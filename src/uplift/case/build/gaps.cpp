@@ -26,7 +26,7 @@ double extent(const std::vector<JointPoint>& points) {
 
 /// The distance of both sides along the normal. They must lie opposite to each other: a pressure between faces that are offset along the
 /// interface would be a moment.
-void take_geometry(const Values& interface, std::vector<JointPoint>& points, const CaseNames& names) {
+void take_geometry(const CaseInterface& interface, std::vector<JointPoint>& points, const CaseNames& names) {
   const double size = extent(points);
   for (JointPoint& point : points) {
     if (point.rigid_upper || point.lower.empty())
@@ -45,11 +45,10 @@ void take_geometry(const Values& interface, std::vector<JointPoint>& points, con
 
 }  // namespace
 
-void set_gaps(const Values& interface, std::vector<JointPoint>& points, const CaseNames& names) {
-  if (interface.is_word("gap")) take_geometry(interface, points, names);
-  const Values* table = table_if(interface, "gap_profile");
-  if (!table) return;
-  const Profile profile(*table, "gaps", names.space);
+void set_gaps(const CaseInterface& interface, std::vector<JointPoint>& points, const CaseNames& names) {
+  if (interface.gap_of_geometry) take_geometry(interface, points, names);
+  if (!interface.gap_profile) return;
+  const Profile profile(*interface.gap_profile, "gaps", names.space);
   std::vector<Vec3> places;
   for (const JointPoint& point : points) places.push_back(point.position);
   profile.require_overlap(places);

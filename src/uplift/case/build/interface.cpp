@@ -15,26 +15,21 @@
 namespace uplift {
 namespace {
 
-/// m; zero where the gap is that of the geometry.
-double uniform_gap(const Values& interface) {
-  return interface.is_word("gap") ? 0 : interface.number("gap");
-}
-
-std::vector<SideNode> side(const Values& table, std::string_view key, const CaseNames& names) {
+std::vector<SideNode> side(const std::vector<NameUsed>& used, const CaseNames& names) {
   std::vector<SideNode> nodes;
-  for (const int node : names.nodes_of(names_used(table, key))) nodes.push_back({node, names.positions[node]});
+  for (const int node : names.nodes_of(used)) nodes.push_back({node, names.positions[node]});
   return nodes;
 }
 
-Place normal_of(const Values& table, Space space) {
-  if (!table.has("normal")) return space.axis(space.up());
-  const Vec3 normal = vector_of(table, "normal", space);
+Place normal_of(const CaseTable& table, const std::optional<VectorUsed>& stated, Space space) {
+  if (!stated) return space.axis(space.up());
+  const Vec3 normal = stated->in(space);
   if (normal.norm() == 0) fail(table, "normal", "a direction", "one of length zero");
   return normal.normalized();
 }
 
 /// Under each point a node on a spring (and dashpot, and mass) of its own along the normal; it moves in this direction only.
-void add_bed(const Values& bed, const std::string& interface, std::vector<JointPoint>& points, ModelBuilder& builder, CaseNames& names) {
+void add_bed(const CaseBed& bed, const std::string& interface, std::vector<JointPoint>& points, ModelBuilder& builder, CaseNames& names) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     JointPoint& point = points[i];
     const std::string name = fmt::format("{}.{}", interface, i + 1);
@@ -47,47 +42,47 @@ void add_bed(const Values& bed, const std::string& interface, std::vector<JointP
     for (int k = 0; k < space.unknowns(); ++k)
       if (space.is_rotation(k) || std::abs(point.normal.dot(space.axis(k))) < 0.5) builder.fix(node, space.dof(k), bed.where());
     const Connection along{{node}, point.normal, space};
-    builder.add_element(std::make_unique<Spring>(along, bed.number("stiffness") * point.area), bed.where("stiffness"));
-    if (bed.number("damping") > 0)
-      builder.add_element(std::make_unique<Dashpot>(along, bed.number("damping") * point.area), bed.where("damping"));
-    if (bed.number("mass") > 0)
-      builder.add_element(std::make_unique<PointMass>(space, node, bed.number("mass") * point.area, Vec3::Zero()), bed.where("mass"));
+    builder.add_element(std::make_unique<Spring>(along, bed.stiffness * point.area), bed.where("stiffness"));
+    if (bed.damping > 0) builder.add_element(std::make_unique<Dashpot>(along, bed.damping * point.area), bed.where("damping"));
+    if (bed.mass > 0) builder.add_element(std::make_unique<PointMass>(space, node, bed.mass * point.area, Vec3::Zero()), bed.where("mass"));
     point.lower = {{node, 1.0}};
   }
 }
 
-Joint footing_joint(const Values& interface, const Values& table, bool rigid_ground, ModelBuilder& builder, CaseNames& names) {
+Joint footing_joint(const CaseInterface& interface, const CaseFooting& table, bool rigid_ground, ModelBuilder& builder, CaseNames& names) {
+  const bool in_space = names.space.dimension == 3;
   Footing footing;
-  footing.body = names.node(name_used(table, "body"));
+  footing.body = names.node(table.body);
   footing.centre = names.positions[footing.body];
-  if (table.has("offset")) footing.centre += vector_of(table, "offset", names.space);
-  footing.normal = normal_of(table, names.space);
-  footing.width = table.number("width");
-  footing.thickness = table.number("thickness");
-  footing.points = table.integer("points");
-  for (const char* key : {"length", "points_across"})
-    if (table.has(key) != (names.space.dimension == 3))
-      fail(table, key, names.space.dimension == 3 ? "length and points_across in space" : "width alone in the plane",
-           table.has(key) ? "given" : "none");
-  if (names.space.dimension == 3) {
-    footing.length = table.number("length");
-    footing.points_across = table.integer("points_across");
-    footing.azimuth = table.number("azimuth");
+  if (table.offset) footing.centre += table.offset->in(names.space);
+  footing.normal = normal_of(table, table.normal, names.space);
+  footing.width = table.width;
+  footing.thickness = table.thickness;
+  footing.points = table.points;
+  const auto check = [&](const char* key, bool given) {
+    if (given != in_space)
+      fail(table, key, in_space ? "length and points_across in space" : "width alone in the plane", given ? "given" : "none");
+  };
+  check("length", table.length.has_value());
+  check("points_across", table.points_across.has_value());
+  if (in_space) {
+    footing.length = *table.length;
+    footing.points_across = *table.points_across;
+    footing.azimuth = table.azimuth;
     footing.thickness = 1;
   }
-  footing.gap = uniform_gap(interface);
-  const std::string& rule = table.text("rule");
-  footing.rule = rule == "nodal" ? FootingRule::nodal : rule == "midpoint" ? FootingRule::midpoint : FootingRule::gauss;
+  footing.gap = interface.gap;
+  footing.rule = table.rule;
   Joint joint;
-  joint.facts.soil = soil_of(interface);
-  if (joint.facts.soil) spread_soil(interface, *joint.facts.soil, footing);
+  joint.facts.soil = soil_of(table);
+  if (joint.facts.soil) spread_soil(*table.soil, *joint.facts.soil, footing);
   joint.points = footing_points(footing, table.where("points"));
   joint.facts.facets = std::make_shared<Facets>(names.space.dimension == 3 ? rectangle_facets(footing, joint.points)
                                                                            : line_facets(joint.points, footing.thickness));
   joint.facts.body = names.nodes[footing.body];
   joint.facts.corners = footing_corners(footing);
   joint.reference = footing.centre;
-  if (const Values* bed = table_if(table, "bed"); bed && !rigid_ground) add_bed(*bed, interface.text("name"), joint.points, builder, names);
+  if (table.bed && !rigid_ground) add_bed(*table.bed, interface.name.name, joint.points, builder, names);
   return joint;
 }
 
@@ -107,11 +102,12 @@ std::vector<int> nodes_of_side(const std::vector<JointPoint>& points, std::vecto
   return nodes;
 }
 
-void add_surface(const Values& interface, const Values& surface, const std::vector<FacePair>& open, const CaseNames& names, Joint& joint) {
-  const FaceQuadrature quadrature = surface.text("quadrature") == "nodal" ? FaceQuadrature::nodal : FaceQuadrature::gauss;
+void add_surface(const CaseInterface& interface, const CaseSurface& surface, const std::vector<FacePair>& open, const CaseNames& names,
+                 Joint& joint) {
+  const FaceQuadrature quadrature = surface.nodal ? FaceQuadrature::nodal : FaceQuadrature::gauss;
   const Mesh& mesh = names.solids->mesh();
   const double thickness = thickness_of(*names.solids, open, surface);
-  FaceJoints joints = face_joints(mesh, open, quadrature, thickness, uniform_gap(interface));
+  FaceJoints joints = face_joints(mesh, open, quadrature, thickness, interface.gap);
   joint.facts.facets =
       std::make_shared<Facets>(mesh.dimension == 3 ? face_facets(mesh, open, quadrature, joints) : line_facets(joints.points, thickness));
   joint.points = std::move(joints.points);
@@ -121,8 +117,8 @@ void add_surface(const Values& interface, const Values& surface, const std::vect
 }
 
 /// Of cells with doubles of their own: see jump_equations.
-void limit_jumps(const Values& cut, const std::vector<CutFace>& faces, const Vec3& normal, const CaseNames& names, ModelBuilder& builder) {
-  const JumpShape shape = cut.text("jump") == "rigid" ? JumpShape::rigid : JumpShape::constant;
+void limit_jumps(const CaseCut& cut, const std::vector<CutFace>& faces, const Vec3& normal, const CaseNames& names, ModelBuilder& builder) {
+  const JumpShape shape = cut.jump == CaseCut::Jump::rigid ? JumpShape::rigid : JumpShape::constant;
   for (const CutFace& face : faces)
     for (const JumpEquation& equation : jump_equations(names.solids->mesh(), face, normal, shape)) {
       std::vector<std::pair<int, double>> terms;
@@ -133,16 +129,16 @@ void limit_jumps(const Values& cut, const std::vector<CutFace>& faces, const Vec
 }
 
 /// Cones hold their points by constraints, which are too many on inclined faces: their tractions would not be determined.
-void add_cut(const Values& interface, const Values& cut, const std::vector<CutFace>& faces, const CaseNames& names, ModelBuilder& builder,
-             Joint& joint) {
+void add_cut(const CaseInterface& interface, const CaseCut& cut, const std::vector<CutFace>& faces, const CaseNames& names,
+             ModelBuilder& builder, Joint& joint) {
   const Mesh& mesh = names.solids->mesh();
   const double thickness = mesh.dimension == 2 ? thickness_of(*names.solids, faces, cut) : 1;
   const Vec3 normal = normal_of_cut(cut, mesh.dimension);
-  CutJoints made = cut_joints(mesh, faces, normal, thickness, uniform_gap(interface));
-  if (cut.text("jump") != "linear") limit_jumps(cut, faces, normal, names, builder);
+  CutJoints made = cut_joints(mesh, faces, normal, thickness, interface.gap);
+  if (cut.jump != CaseCut::Jump::linear) limit_jumps(cut, faces, normal, names, builder);
   joint.facts.facets = std::make_shared<Facets>(std::move(made.facets));
   if (made.inclined) joint.facts.why_no_cones = "a plane that cuts its cells at an angle";
-  if (cut.text("jump") != "linear") joint.facts.why_no_cones = "a plane with constant or rigid jumps";
+  if (cut.jump != CaseCut::Jump::linear) joint.facts.why_no_cones = "a plane with constant or rigid jumps";
   for (const CutFace& face : faces) joint.facts.corners.insert(joint.facts.corners.end(), face.corners.begin(), face.corners.end());
   joint.points = std::move(made.points);
   for (JointPoint& point : joint.points)
@@ -151,50 +147,44 @@ void add_cut(const Values& interface, const Values& cut, const std::vector<CutFa
 }
 
 /// See InterfaceFacts::depth.
-double depth_of(const Values& interface, const std::vector<FacePair>& open, const std::vector<CutFace>& cut, const CaseNames& names) {
+double depth_of(const CaseInterface& interface, const std::vector<FacePair>& open, const std::vector<CutFace>& cut,
+                const CaseNames& names) {
   if (names.space.dimension == 3) return 0;
-  for (const char* kind : {"footing", "line"})
-    if (const Values* table = table_if(interface, kind)) return table->number("thickness");
-  if (const Values* table = table_if(interface, "cut")) return thickness_of(*names.solids, cut, *table);
-  const Values* surface = table_if(interface, "surface");
-  return surface ? thickness_of(*names.solids, open, *surface) : 0;
+  if (const CaseFooting* footing = interface.footing()) return footing->thickness;
+  if (const auto* line = std::get_if<CaseLine>(&interface.place)) return line->thickness;
+  if (const CaseCut* table = interface.cut()) return thickness_of(*names.solids, cut, *table);
+  return interface.surface() ? thickness_of(*names.solids, open, *interface.surface()) : 0;
 }
 
 }  // namespace
 
-Joint make_joint(const Values& interface, const std::vector<FacePair>& open, const std::vector<CutFace>& cut_faces, bool rigid_ground,
-                 ModelBuilder& builder, CaseNames& names) {
-  const Values* footing = table_if(interface, "footing");
-  const Values* pairs = table_if(interface, "pairs");
-  const Values* line = table_if(interface, "line");
-  const Values* surface = table_if(interface, "surface");
-  const Values* cut = table_if(interface, "cut");
-  const int kinds = (footing != nullptr) + (pairs != nullptr) + (line != nullptr) + (surface != nullptr) + (cut != nullptr);
-  if (kinds != 1)
-    fail(interface, "", "exactly one of footing, pairs, line, surface and cut", kinds == 0 ? "none" : fmt::format("{}", kinds));
+Joint make_joint(const CaseInterface& interface, const std::vector<FacePair>& open, const std::vector<CutFace>& cut_faces,
+                 bool rigid_ground, ModelBuilder& builder, CaseNames& names) {
+  const CaseFooting* footing = interface.footing();
+  const CaseSurface* surface = interface.surface();
+  const CaseCut* cut = interface.cut();
   Joint joint;
   if (footing) joint = footing_joint(interface, *footing, rigid_ground, builder, names);
-  if (pairs)
-    joint.points = pair_points(side(*pairs, "upper", names), side(*pairs, "lower", names), normal_of(*pairs, names.space),
-                               pairs->number("area"), uniform_gap(interface), names.space, pairs->where());
-  if (line) {
+  if (const auto* pairs = std::get_if<CasePairs>(&interface.place))
+    joint.points = pair_points(side(pairs->upper, names), side(pairs->lower, names), normal_of(*pairs, pairs->normal, names.space),
+                               pairs->area, interface.gap, names.space, pairs->where());
+  if (const auto* line = std::get_if<CaseLine>(&interface.place)) {
     if (names.space.dimension == 3) fail(*line, "", "footing, pairs or surface in a model in space", "line");
-    LineJoint made{side(*line, "upper", names),        side(*line, "lower", names),
-                   line->integer("nodes_per_element"), line->text("quadrature") == "nodal" ? LineQuadrature::nodal : LineQuadrature::gauss,
-                   line->number("thickness"),          uniform_gap(interface)};
+    LineJoint made{side(line->upper, names), side(line->lower, names), line->nodes_per_element,
+                   line->quadrature,         line->thickness,          interface.gap};
     joint.points = line_points(made, line->where());
     joint.facts.facets = std::make_shared<Facets>(line_facets(joint.points, made.thickness));
   }
   if (surface) add_surface(interface, *surface, open, names, joint);
   if (cut) add_cut(interface, *cut, cut_faces, names, builder, joint);
-  if (surface) joint.facts.faces = open, joint.facts.nodal = surface->text("quadrature") == "nodal";
+  if (surface) joint.facts.faces = open, joint.facts.nodal = surface->nodal;
   joint.facts.depth = depth_of(interface, open, cut_faces, names);
   set_gaps(interface, joint.points, names);
-  set_water(interface, joint.points, names);
+  set_water(interface.water, joint.points, names);
   const Place reference = joint.reference;
   joint = with_points(joint, joint.points);
   if (footing) joint.reference = reference;
-  joint.facts.name = interface.text("name");
+  joint.facts.name = interface.name.name;
   return joint;
 }
 

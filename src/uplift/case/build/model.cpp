@@ -159,7 +159,7 @@ std::map<int, std::string> named_nodes(const Mesh& mesh, const Names& taken) {
 void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
   if (!read.mesh) return;
   const Mesh& mesh = read.mesh->mesh;
-  const Values& table = read.values.table("mesh");
+  const CaseTable& table = *read.input->mesh;
   names.solids = std::make_shared<const CaseSolids>(read.values, *read.mesh);
   names.first_of_mesh = names.nodes.size();
   const std::map<int, std::string> named = named_nodes(mesh, names.nodes);
@@ -219,7 +219,7 @@ void add_functions(const Case& read, CaseNames& names) {
 }
 
 void add_structure(const Case& read, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned, bool at_rest) {
-  add_beams(read.values, builder, names);
+  add_beams(read, builder, names);
   add_masses(*read.input, builder, names, tuned);
   add_elements(read.values, builder, names);
   add_supports(read, builder, names, at_rest);

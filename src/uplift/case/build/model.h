@@ -66,7 +66,7 @@ void add_functions(const Case& read, CaseNames& names);
 /// Nodes of beams: those of the mesh that have rotations.
 std::set<int> beam_nodes(const CaseNames& names);
 /// Beams between nodes and along groups of the mesh.
-void add_beams(const Values& root, ModelBuilder& builder, CaseNames& names);
+void add_beams(const Case& read, ModelBuilder& builder, CaseNames& names);
 /// The master node of a rigid body: as named, else the node of its group that is nearest to the group's middle.
 int master_of(const CaseBody& body, const CaseNames& names);
 /// `at_rest`: with the supports that hold in static stages alone.
@@ -86,17 +86,17 @@ struct Joint {
   Place reference;
 };
 /// `open`: the faces that the mesh was opened at for it; `cut`: those that its plane has cut.
-Joint make_joint(const Values& interface, const std::vector<FacePair>& open, const std::vector<CutFace>& cut, bool rigid_ground,
+Joint make_joint(const CaseInterface& interface, const std::vector<FacePair>& open, const std::vector<CutFace>& cut, bool rigid_ground,
                  ModelBuilder& builder, CaseNames& names);
 
 /// The underside of a [[foundation]], and its one point.
-Footprint footprint_of(const Values& foundation, Space space);
-Joint foundation_joint(const Values& foundation, const Footprint& footprint, const CaseNames& names);
+Footprint footprint_of(const CaseFoundation& foundation, Space space);
+Joint foundation_joint(const CaseFoundation& foundation, const Footprint& footprint, const CaseNames& names);
 /// Of [foundation.soil] with `radiation`; else null.
-std::unique_ptr<const Element> radiation_dashpot(const Values& foundation, const Footprint& footprint, const CaseNames& names);
+std::unique_ptr<const Element> radiation_dashpot(const CaseFoundation& foundation, const Footprint& footprint, const CaseNames& names);
 
 /// Initial gaps that come from the geometry or from a table; of points with both sides.
-void set_gaps(const Values& interface, std::vector<JointPoint>& points, const CaseNames& names);
+void set_gaps(const CaseInterface& interface, std::vector<JointPoint>& points, const CaseNames& names);
 
 /// Number of local components that a law or cone needs: 1 when it has no tangential part, else all of the space.
 int components_of(const Values& behaviour, Space space);

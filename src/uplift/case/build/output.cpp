@@ -92,8 +92,8 @@ std::vector<InterfaceQuantity> interface_quantities(const Interface& interface, 
 }
 /// The law of an interface, or the model of a foundation, as the case states it: that of a bonded run is another one.
 const Values& stated_behaviour(const Case& read, const BuiltCase& built, std::size_t interface) {
-  for (const Values& foundation : read.values.tables("foundation"))
-    if (foundation.text("name") == built.model.interfaces[interface].name) return foundation.part("model");
+  for (const CaseFoundation& foundation : read.input->foundations)
+    if (foundation.name.name == built.model.interfaces[interface].name) return *foundation.model;
   return *built.behaviours[interface];
 }
 /// Whether a run has this quantity of an interface; a bonded one has no strength.

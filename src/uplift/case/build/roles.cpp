@@ -38,12 +38,12 @@ std::pair<std::vector<Item>, std::vector<Item>> divided(const std::vector<Item>&
 }
 
 /// The joints of one [[interface]] with their roles: one, or base and walls.
-std::vector<Joint> joints_of(const Values& table, const std::vector<FacePair>& open, const std::vector<CutFace>& cut, const Vec3& up,
+std::vector<Joint> joints_of(const CaseInterface& table, const std::vector<FacePair>& open, const std::vector<CutFace>& cut, const Vec3& up,
                              bool rigid_ground, ModelBuilder& builder, CaseNames& names) {
   const auto joint_of = [&](const std::vector<FacePair>& faces) { return make_joint(table, faces, cut, rigid_ground, builder, names); };
-  if (table.has("role")) {
+  if (table.role) {
     Joint joint = joint_of(open);
-    joint.facts.role = table.text("role") == "base" ? Role::base : Role::wall;
+    joint.facts.role = *table.role;
     return {std::move(joint)};
   }
   std::vector<Vec3> normals;
@@ -77,27 +77,27 @@ Vec3 upward(const CaseInput& input) {
 }
 
 std::vector<InterfacePart> interface_parts(const Case& read, bool rigid_ground, ModelBuilder& builder, CaseNames& names) {
-  const std::vector<Values>& tables = read.values.tables("interface");
+  const std::vector<CaseInterface>& tables = read.input->interfaces;
   const Vec3 up = upward(*read.input);
   std::vector<InterfacePart> parts;
   for (std::size_t k = 0; k < tables.size(); ++k) {
-    const std::string& name = tables[k].text("name");
-    names.interfaces.add(tables[k], "name");
+    const std::string& name = tables[k].name.name;
+    names.interfaces.add(tables[k].name);
     const std::vector<FacePair> none;
     const std::vector<CutFace> no_cut;
     std::vector<Joint> joints = joints_of(tables[k], read.mesh ? read.mesh->open[k] : none, read.mesh ? read.mesh->cut[k] : no_cut, up,
                                           rigid_ground, builder, names);
     for (Joint& joint : joints) {
       const bool second = &joint != &joints.front();
-      InterfacePart part{&tables[k], second ? name + " walls" : name, std::move(joint)};
-      if (second) names.interfaces.add(part.name, tables[k].where("name"), tables[k].path("name"));
+      InterfacePart part{&tables[k], tables[k].law, second ? name + " walls" : name, std::move(joint)};
+      if (second) names.interfaces.add(part.name, tables[k].name.where(), tables[k].name.path());
       part.joint.facts.name = part.name;
       parts.push_back(std::move(part));
     }
   }
-  for (const Values& table : read.values.tables("foundation")) {
-    names.interfaces.add(table, "name");
-    InterfacePart part{&table, table.text("name"), {}, footprint_of(table, names.space)};
+  for (const CaseFoundation& table : read.input->foundations) {
+    names.interfaces.add(table.name);
+    InterfacePart part{&table, table.model, table.name.name, {}, &table, footprint_of(table, names.space)};
     part.joint = foundation_joint(table, *part.footprint, names);
     parts.push_back(std::move(part));
   }

@@ -13,10 +13,12 @@ Vec3 upward(const CaseInput& input);
 
 /// An interface of the model: an [[interface]] of the case, or its base or its walls; or a [[foundation]].
 struct InterfacePart {
-  const Values* table = nullptr;
+  const CaseTable* table = nullptr;
+  const Values* behaviour = nullptr;  // law or cone; of a foundation its model
   std::string name;
   Joint joint;
-  std::optional<Footprint> footprint = {};  // of a foundation
+  const CaseFoundation* foundation = nullptr;  // null: it is none
+  std::optional<Footprint> footprint = {};     // of a foundation
 };
 /// The interfaces of a case, bases first. A surface or a line with faces of both kinds is divided in two: the base keeps the name, the
 /// other part is called "<name> walls". A face is of a base when its normal lies within 45 degrees of the upward direction; where no face

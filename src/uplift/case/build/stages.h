@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "uplift/case/case.h"
+#include "uplift/case/schema/case_input.h"
 
 namespace uplift {
 

@@ -9,20 +9,18 @@
 
 namespace uplift {
 
-void set_water(const Values& interface, std::vector<JointPoint>& points, const CaseNames& names) {
-  const Values* water = table_if(interface, "water");
+void set_water(const std::optional<CaseWater>& water, std::vector<JointPoint>& points, const CaseNames& names) {
   if (!water) return;
-  const bool by_level = first_of_two(*water, "level", "head");
   const int up = names.space.up();
   double most = 0;
   for (JointPoint& point : points) {
-    const double head = by_level ? water->number("level") - point.position[up] : water->number("head");
-    point.water = water->number("unit_weight") * std::max(0.0, head);
+    const double head = water->level ? *water->level - point.position[up] : water->head;
+    point.water = water->unit_weight * std::max(0.0, head);
     most = std::max(most, point.water);
   }
-  if (by_level && !(most > 0))
+  if (water->level && !(most > 0))
     fail(*water, "level", "a level above the lowest point of the interface",
-         fmt::format("{:g} m, with all points at {:.6g} m or higher", water->number("level"),
+         fmt::format("{:g} m, with all points at {:.6g} m or higher", *water->level,
                      std::ranges::min(points, {}, [&](const JointPoint& point) { return point.position[up]; }).position[up]));
 }
 
@@ -39,13 +37,13 @@ std::string note_of_water(const InterfacePart& part) {
 void check_second_order_water(const Case& read) {
   for (const CaseStage& stage : read.input->stages) {
     if (!stage.p_delta) continue;
-    for (const Values& interface : read.values.tables("interface")) {
-      const Values* footing = interface.has("water") ? table_if(interface, "footing") : nullptr;
-      if (!footing || !footing->has("offset")) continue;
+    for (const CaseInterface& interface : read.input->interfaces) {
+      const CaseFooting* footing = interface.footing();
+      if (!interface.water || !footing || !footing->offset) continue;
       fail(stage, "p_delta",
            fmt::format("without p_delta, or no offset of the footing with water: a body {} in the middle of the underside",
-                       in_quotes(footing->text("body"))),
-           fmt::format("an offset in the interface {}", in_quotes(interface.text("name"))));
+                       in_quotes(footing->body.name)),
+           fmt::format("an offset in the interface {}", in_quotes(interface.name.name)));
     }
   }
 }

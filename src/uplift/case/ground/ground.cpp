@@ -16,8 +16,7 @@ struct Side {
   Vec3 low, high;
 };
 
-Side side_of(const Values& tie, std::string_view key, const CaseNames& names) {
-  const NameUsed group = name_used(tie, key);
+Side side_of(const NameUsed& group, const CaseNames& names) {
   Side side{names.mesh_for(group).nodes(group), {}, {}};
   const std::vector<Vec3>& places = names.solids->mesh().nodes;
   side.low = side.high = places[static_cast<std::size_t>(side.nodes.front())];
@@ -33,14 +32,14 @@ Side side_of(const Values& tie, std::string_view key, const CaseNames& names) {
 /// Pairs the nodes of two opposite sides by their place across the direction from one to the other.
 class Partners {
  public:
-  Partners(const Values& tie, const Side& from, const Side& to, const CaseNames& names)
+  Partners(const CaseTie& tie, const Side& from, const Side& to, const CaseNames& names)
       : tie_(tie), places_(names.solids->mesh().nodes), up_(names.space.up()) {
     const Vec3 apart = (to.low + to.high - from.low - from.high) / 2;
     apart.cwiseAbs().maxCoeff(&across_);
     tolerance_ = 1e-6 * (from.high.cwiseMax(to.high) - from.low.cwiseMin(to.low)).norm();
     if (across_ == up_ || !(apart.norm() > tolerance_))
       fail(tie, "to", "the opposite side of the ground, at a distance sideways (a tie makes the ground go on; it does not join two meshes)",
-           fmt::format("{}, at the same place or above or below", in_quotes(tie.text("to"))));
+           fmt::format("{}, at the same place or above or below", in_quotes(tie.to.name)));
     find_cells(names.solids->mesh());
   }
 
@@ -95,20 +94,20 @@ class Partners {
       add(mesh.cell(id));
     return sum / count;
   }
-  const Values& tie_;
+  const CaseTie& tie_;
   const std::vector<Vec3>& places_;
   int up_, across_ = 0;
   double tolerance_ = 0;     // m
   std::vector<Vec3> cells_;  // m
 };
 
-std::vector<Dof> unknowns_of(const Values& tie, Space space) {
+std::vector<Dof> unknowns_of(const CaseTie& tie, Space space) {
   std::vector<Dof> unknowns;
-  for (const std::string& word : tie.texts("unknowns")) {
+  for (const NameUsed& word : tie.unknowns) {
     int found = -1;
     for (int k = 0; k < space.dimension; ++k)
-      if (to_string(space.dof(k)) == word) found = k;
-    if (found < 0) fail(tie, "unknowns", space.dimension == 2 ? "ux or uy" : "ux, uy or uz", in_quotes(word));
+      if (to_string(space.dof(k)) == word.name) found = k;
+    if (found < 0) fail(word, space.dimension == 2 ? "ux or uy" : "ux, uy or uz", in_quotes(word.name));
     unknowns.push_back(space.dof(found));
   }
   return unknowns;
@@ -116,16 +115,16 @@ std::vector<Dof> unknowns_of(const Values& tie, Space space) {
 
 }  // namespace
 
-void add_ties(const Values& root, ModelBuilder& builder, const CaseNames& names) {
-  for (const Values& tie : root.tables("tie")) {
-    const Side from = side_of(tie, "group", names), to = side_of(tie, "to", names);
+void add_ties(const CaseInput& input, ModelBuilder& builder, const CaseNames& names) {
+  for (const CaseTie& tie : input.ties) {
+    const Side from = side_of(tie.group, names), to = side_of(tie.to, names);
     const Partners partners(tie, from, to, names);
     const std::vector<Dof> unknowns = unknowns_of(tie, names.space);
     for (const int node : from.nodes) {
-      const int partner = partners.find(node, to.nodes, tie.text("to"));
+      const int partner = partners.find(node, to.nodes, tie.to.name);
       for (const Dof unknown : unknowns) builder.tie_equal(names.first_of_mesh + node, names.first_of_mesh + partner, unknown, tie.where());
     }
-    for (const int node : to.nodes) partners.find(node, from.nodes, tie.text("group"));
+    for (const int node : to.nodes) partners.find(node, from.nodes, tie.group.name);
   }
 }
 

@@ -8,7 +8,7 @@
 namespace uplift {
 
 /// Tied nodes: every node of a group moves as its partner on the opposite side.
-void add_ties(const Values& root, ModelBuilder& builder, const CaseNames& names);
+void add_ties(const CaseInput& input, ModelBuilder& builder, const CaseNames& names);
 
 /// Free-field columns beside the absorbing faces that ask for them (`free_field`), marched through the dynamic stages, and what they put
 /// on these faces. Throws InputError for faces that are not in horizontal rows, without an incident wave below, or with modal damping.

@@ -7,7 +7,7 @@
 
 namespace uplift {
 
-BeamCells::BeamCells(const Values& root, const CaseSolids* solids) : root_(root), solids_(solids) {}
+BeamCells::BeamCells(const Case& read, const CaseSolids* solids) : read_(read), solids_(solids) {}
 
 void BeamCells::check_use(const Values& beam, CellId cell) const {
   const auto refuse_in = [&](const std::string& group, const std::string& use) {
@@ -15,14 +15,12 @@ void BeamCells::check_use(const Values& beam, CellId cell) const {
     if (found != solids_->mesh().groups.end() && std::ranges::binary_search(found->second.cells, cell))
       fail(beam, "group", "lines that are beams alone", name(cell) + ", " + use);
   };
-  for (const Values& interface : root_.tables("interface"))
-    if (const Values* surface = table_if(interface, "surface")) {
-      const bool opened = surface->has("group");
-      for (const std::string& group :
-           {surface->text(opened ? "group" : "lower_group"), opened ? surface->text("group") + "_upper" : surface->text("upper_group")})
-        refuse_in(group, "where the interface " + in_quotes(interface.text("name")) + " opens");
-    }
-  for (const Values& face : root_.tables("absorbing"))
+  for (const CaseInterface& interface : read_.input->interfaces)
+    if (const CaseSurface* surface = interface.surface())
+      for (const std::string& group : {surface->group ? surface->group->name : surface->lower_group->name,
+                                       surface->group ? surface->group->name + "_upper" : surface->upper_group->name})
+        refuse_in(group, "where the interface " + in_quotes(interface.name.name) + " opens");
+  for (const Values& face : read_.values.tables("absorbing"))
     refuse_in(face.text("group"), "which is absorbing too (" + in_quotes(face.text("group")) + ")");
 }
 

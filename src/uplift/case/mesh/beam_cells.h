@@ -13,7 +13,7 @@ namespace uplift {
 class BeamCells {
  public:
   /// `solids`: null without a mesh.
-  BeamCells(const Values& root, const CaseSolids* solids);
+  BeamCells(const Case& read, const CaseSolids* solids);
   /// A straight piece of a beam between two nodes of the mesh.
   struct Stretch {
     CellId cell;
@@ -30,7 +30,7 @@ class BeamCells {
   void check_use(const Values& beam, CellId cell) const;
   void claim(const Values& beam, const Stretch& stretch);
 
-  const Values& root_;
+  const Case& read_;
   const CaseSolids* solids_;
   std::map<std::pair<int, int>, const Values*> taken_;  // by the nodes, ascending
 };

@@ -15,46 +15,35 @@ namespace uplift {
 namespace {
 
 /// Least and largest coordinate along an axis as half-spaces.
-void add_limits(const Values& cut, const char* key, const Vec3& axis, std::vector<HalfSpace>& within) {
-  if (!cut.has(key)) return;
-  const std::vector<double>& ends = cut.numbers(key);
-  if (ends.size() != 2 || !(ends[0] < ends[1]))
-    fail(cut, key, "two numbers, the least and the largest",
-         ends.size() == 2 ? fmt::format("{:g} and {:g}", ends[0], ends[1]) : fmt::format("{} numbers", ends.size()));
-  within.push_back({-axis, -ends[0]});
-  within.push_back({axis, ends[1]});
+void add_limits(const std::optional<CaseCut::Range>& range, const Vec3& axis, std::vector<HalfSpace>& within) {
+  if (!range) return;
+  within.push_back({-axis, -range->front()});
+  within.push_back({axis, range->back()});
 }
 
-CutPlane plane_of(const Values& cut, int dimension) {
+CutPlane plane_of(const CaseCut& cut, int dimension) {
   const Vec3 normal = normal_of_cut(cut, dimension), up = dimension == 2 ? Vec3::UnitY() : Vec3::UnitZ();
-  CutPlane plane{cut.texts("through"), {}};
+  CutPlane plane{cut.through, {}};
   CutOutline& outline = plane.outlines.front();
-  if (plane.through.empty()) fail(cut, "through", "at least one group of cells", "none");
-  double level = 0;
-  if (cut.has("level"))
-    level = normal.dot(up) * cut.number("level");
-  else
-    level = normal.dot(vector_of(cut, "point", {dimension}));
+  const double level = cut.level ? normal.dot(up) * *cut.level : normal.dot(cut.point->in({dimension}));
   plane.below = {normal, level};
-  if (cut.has("upper")) outline.upper = cut.text("upper");
-  if (std::ranges::find(plane.through, outline.upper) != plane.through.end())
-    fail(cut, "upper", "another group than those of `through`, or none", in_quotes(outline.upper));
-  add_limits(cut, "x", Vec3::UnitX(), outline.within);
-  if (dimension == 2 && cut.has("y")) fail(cut, "y", "no y in a plane mesh: height limits the outline", "one");
-  add_limits(cut, "y", Vec3::UnitY(), outline.within);
-  add_limits(cut, "ground_x", Vec3::UnitX(), plane.extent);
-  if (dimension == 2 && cut.has("ground_y")) fail(cut, "ground_y", "ground_x alone in a plane mesh", "one");
-  add_limits(cut, "ground_y", Vec3::UnitY(), plane.extent);
-  if (cut.has("height")) outline.within.push_back({normal, level + cut.number("height")});
-  plane.own_doubles = cut.text("jump") != "linear";
-  if (plane.own_doubles && dimension == 3) fail(cut, "jump", "linear in space", in_quotes(cut.text("jump")));
+  outline.upper = cut.upper;
+  if (dimension == 2 && cut.y) fail(cut, "y", "no y in a plane mesh: height limits the outline", "one");
+  add_limits(cut.x, Vec3::UnitX(), outline.within);
+  add_limits(cut.y, Vec3::UnitY(), outline.within);
+  if (dimension == 2 && cut.ground_y) fail(cut, "ground_y", "ground_x alone in a plane mesh", "one");
+  add_limits(cut.ground_x, Vec3::UnitX(), plane.extent);
+  add_limits(cut.ground_y, Vec3::UnitY(), plane.extent);
+  if (cut.height) outline.within.push_back({normal, level + *cut.height});
+  plane.own_doubles = cut.jump != CaseCut::Jump::linear;
+  if (plane.own_doubles && dimension == 3) fail(cut, "jump", "linear in space", in_quotes(cut.jump_word));
   if (plane.own_doubles && !(outline.within.empty() && plane.extent.empty()))
-    fail(cut, "jump", "linear, since the ground has a free surface beside the outline", in_quotes(cut.text("jump")));
+    fail(cut, "jump", "linear, since the ground has a free surface beside the outline", in_quotes(cut.jump_word));
   return plane;
 }
 
-void shift_mesh(const Values& cut, const CutPlane& plane, const std::vector<std::string>& lines, Mesh& mesh) {
-  const double share = cut.number("mesh_shift");
+void shift_mesh(const CaseCut& cut, const CutPlane& plane, const std::vector<std::string>& lines, Mesh& mesh) {
+  const double share = cut.mesh_shift;
   if (share == 0) return;
   shift_nodes(mesh, plane, share, lines);
   try {
@@ -89,8 +78,8 @@ void sort_by_level(std::vector<CutPlane>& planes, std::vector<std::vector<std::s
 }
 
 /// In a triangle one node is alone on its side: the other side can turn about it without any strain.
-void refuse_undetermined_jumps(const Values& cut, const std::vector<CutFace>& faces, const Mesh& mesh) {
-  if (cut.text("jump") != "rigid") return;
+void refuse_undetermined_jumps(const CaseCut& cut, const std::vector<CutFace>& faces, const Mesh& mesh) {
+  if (cut.jump != CaseCut::Jump::rigid) return;
   for (const CutFace& face : faces)
     if (mesh.type(face.lower) != Cell::quad4)
       fail(cut, "jump", "constant or linear in triangles, where one node alone leaves the rotation of a rigid jump undetermined",
@@ -98,18 +87,18 @@ void refuse_undetermined_jumps(const Values& cut, const std::vector<CutFace>& fa
 }
 
 /// Gives the surface beside the outlines of a plane the name that its interfaces have for it.
-void name_free_surface(const std::vector<Values>& interfaces, const std::vector<std::size_t>& of, const std::vector<FreeFace>& faces,
+void name_free_surface(const std::vector<CaseInterface>& interfaces, const std::vector<std::size_t>& of, const std::vector<FreeFace>& faces,
                        CaseMesh& made) {
   const std::string* name = nullptr;
   for (const std::size_t k : of) {
-    const Values& cut = interfaces[k].table("cut");
-    if (!cut.has("free")) continue;
-    const std::string& own = cut.text("free");
-    if (name != nullptr && own != *name) fail(cut, "free", in_quotes(*name) + ", as of the other outline on this plane", in_quotes(own));
+    const std::optional<NameUsed>& free = interfaces[k].cut()->free;
+    if (!free) continue;
+    const std::string& own = free->name;
+    if (name != nullptr && own != *name) fail(*free, in_quotes(*name) + ", as of the other outline on this plane", in_quotes(own));
     if (name != nullptr) continue;
     name = &own;
-    if (made.mesh.groups.contains(own)) fail(cut, "free", "a new name", in_quotes(own) + ", which is a group of the mesh");
-    if (faces.empty()) fail(cut, "free", "a surface of the ground beside the outline", "none: the structure covers all of the plane");
+    if (made.mesh.groups.contains(own)) fail(*free, "a new name", in_quotes(own) + ", which is a group of the mesh");
+    if (faces.empty()) fail(*free, "a surface of the ground beside the outline", "none: the structure covers all of the plane");
     std::vector<FreeFace>& all = made.free[own];
     all.insert(all.end(), faces.begin(), faces.end());
   }
@@ -117,24 +106,20 @@ void name_free_surface(const std::vector<Values>& interfaces, const std::vector<
 
 }  // namespace
 
-Vec3 normal_of_cut(const Values& cut, int dimension) {
-  const bool level = cut.has("level");
-  if (level == cut.has("point") || (!level && !cut.has("normal")))
-    fail(cut, "", "either level, or point and normal", level ? "both" : cut.has("point") ? "no normal" : "neither");
-  if (level && cut.has("normal")) fail(cut, "normal", "either level, or point and normal", "level and normal");
-  if (level) return dimension == 2 ? Vec3::UnitY() : Vec3::UnitZ();
-  const Vec3 normal = vector_of(cut, "normal", {dimension});
+Vec3 normal_of_cut(const CaseCut& cut, int dimension) {
+  if (cut.level) return dimension == 2 ? Vec3::UnitY() : Vec3::UnitZ();
+  const Vec3 normal = cut.normal->in({dimension});
   if (normal.norm() == 0) fail(cut, "normal", "a direction", "one of length zero");
   return normal.normalized();
 }
 
-void cut_planes(const Values& root, CaseMesh& made) {
-  const std::vector<Values>& interfaces = root.tables("interface");
+void cut_planes(const Case& read, CaseMesh& made) {
+  const std::vector<CaseInterface>& interfaces = read.input->interfaces;
   made.cut.resize(interfaces.size());
   std::vector<CutPlane> planes;
   std::vector<std::vector<std::size_t>> of;  // interfaces of each plane, in the order of its outlines
   for (std::size_t k = 0; k < interfaces.size(); ++k)
-    if (const Values* cut = table_if(interfaces[k], "cut")) {
+    if (const CaseCut* cut = interfaces[k].cut()) {
       CutPlane plane = plane_of(*cut, made.mesh.dimension);
       const auto same = std::ranges::find_if(planes, [&](const CutPlane& other) { return is_same_plane(plane, other); });
       if (same == planes.end()) {
@@ -148,16 +133,16 @@ void cut_planes(const Values& root, CaseMesh& made) {
   if (planes.empty()) return;
   sort_by_level(planes, of);
   std::vector<std::string> lines;
-  for (const Values* beam : element_tables(root, ElementPlace::lines))
+  for (const Values* beam : element_tables(read.values, ElementPlace::lines))
     if (beam->has("group")) lines.push_back(beam->text("group"));
   std::vector<Where> where;
   for (std::size_t i = 0; i < of.size(); ++i) {
-    const Values& first = interfaces[of[i].front()].table("cut");
+    const CaseCut& first = *interfaces[of[i].front()].cut();
     where.push_back(first.where());
     for (const std::size_t k : of[i])
-      if (const Values& cut = interfaces[k].table("cut"); cut.number("mesh_shift") != first.number("mesh_shift"))
-        fail(cut, "mesh_shift", fmt::format("{:g}, as of the other outline on this plane", first.number("mesh_shift")),
-             fmt::format("{:g}", cut.number("mesh_shift")));
+      if (const CaseCut& cut = *interfaces[k].cut(); cut.mesh_shift != first.mesh_shift)
+        fail(cut, "mesh_shift", fmt::format("{:g}, as of the other outline on this plane", first.mesh_shift),
+             fmt::format("{:g}", cut.mesh_shift));
     shift_mesh(first, planes[i], lines, made.mesh);
   }
   std::vector<std::vector<FreeFace>> free;
@@ -166,9 +151,9 @@ void cut_planes(const Values& root, CaseMesh& made) {
     for (const CutFace& face : faces[i]) made.cut[of[i][static_cast<std::size_t>(face.outline)]].push_back(face);
     for (const std::size_t k : of[i])
       if (made.cut[k].empty())
-        fail(interfaces[k].table("cut"), "", "an interface on the plane", "none: nothing above the plane lies within the outline");
+        fail(*interfaces[k].cut(), "", "an interface on the plane", "none: nothing above the plane lies within the outline");
     name_free_surface(interfaces, of[i], free[i], made);
-    refuse_undetermined_jumps(interfaces[of[i].front()].table("cut"), faces[i], made.mesh);
+    refuse_undetermined_jumps(*interfaces[of[i].front()].cut(), faces[i], made.mesh);
   }
 }
 

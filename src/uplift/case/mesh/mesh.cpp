@@ -24,66 +24,25 @@
 namespace uplift {
 namespace {
 
-Cell cell_named(const std::string& name) {
-  for (const CellInfo& each : all_cells())
-    if (each.name == name) return each.cell;
-  assert(false);
-  return Cell::quad4;
-}
-
-SoilBox::Part part_from(const Values* table) {
-  SoilBox::Part part;
-  if (!table) return part;
-  part.width = {table->number("width"), table->number(table->has("length") ? "length" : "width")};
-  part.height = table->number("height");
-  part.size = table->number("size");
-  if (table->items().contains("offset")) part.offset = {table->number("offset"), table->number("offset_y")};
-  return part;
-}
-
-Mesh make_soil_box(const Values& box) {
-  SoilBox made;
-  const Values& soil = box.table("soil");
-  made.dimension = soil.has("length") ? 3 : 2;
-  made.soil.width = {soil.number("width"), soil.number(soil.has("length") ? "length" : "width")};
-  made.soil.size = soil.number("size");
-  made.soil.layers.clear();
-  for (const Values& layer : soil.tables("layers")) made.soil.layers.push_back({layer.number("thickness"), layer.number("size")});
-  if (made.soil.layers.empty()) fail(soil, "layers", "at least one layer", "none");
-  made.raft = part_from(table_if(box, "raft"));
-  made.block = part_from(table_if(box, "block"));
-  made.embedment = box.number("embedment");
-  made.growth = box.number("growth");
-  made.cell = box.has("cell") ? cell_named(box.text("cell")) : made.dimension == 2 ? Cell::quad4 : Cell::hex8;
-  if (info(made.cell).dimension != made.dimension)
-    fail(box, "cell",
-         made.dimension == 2 ? "a cell of the plane (soil.length makes the mesh one in space)" : "a cell of space, for example hex8",
-         in_quotes(box.text("cell")));
+Mesh make_soil_box(const SoilBox& made, const Values& box) {
   // At least: stiffness and mass of one node for each element, with 3 x 81 or 2 x 18 numbers of 12 bytes each; the factor takes more.
   const double bytes = made.dimension == 3 ? 6000 : 900;
   return soil_box(made, box.where(), box.path() + ".", available_memory() / bytes);
 }
 
-/// Whether the faces of a surface are drawn apart; either two groups of them are named, or one at which the mesh is opened.
-bool drawn_apart(const Values& surface) {
-  const bool apart = surface.has("lower_group") && surface.has("upper_group"), opened = surface.has("group") && surface.has("lower");
-  const int given = surface.has("lower_group") + surface.has("upper_group") + surface.has("group") + surface.has("lower");
-  if (given != 2 || !(apart || opened))
-    fail(surface, "", "group and lower, or lower_group and upper_group",
-         given == 0  ? "none of them"
-         : given < 2 ? "one of them"
-                     : fmt::format("{} of them", given));
-  return apart;
+/// Whether the faces of a surface are drawn apart; the mesh is opened at others.
+bool drawn_apart(const CaseSurface& surface) {
+  return surface.lower_group.has_value();
 }
 
 /// Groups of interfaces whose surfaces have the same lower side, in the order of the case.
-std::vector<std::vector<std::size_t>> opened_together(const std::vector<Values>& interfaces) {
+std::vector<std::vector<std::size_t>> opened_together(const std::vector<CaseInterface>& interfaces) {
   std::vector<std::vector<std::size_t>> together;
   std::vector<std::vector<std::string>> sides;
   for (std::size_t k = 0; k < interfaces.size(); ++k) {
-    const Values* surface = table_if(interfaces[k], "surface");
+    const CaseSurface* surface = interfaces[k].surface();
     if (!surface || drawn_apart(*surface)) continue;
-    std::vector<std::string> lower = surface->texts("lower");
+    std::vector<std::string> lower = surface->lower;
     std::ranges::sort(lower);
     const auto same = std::ranges::find(sides, lower);
     if (same == sides.end()) {
@@ -96,18 +55,18 @@ std::vector<std::vector<std::size_t>> opened_together(const std::vector<Values>&
   return together;
 }
 
-void open_surfaces(const std::vector<Values>& interfaces, CaseMesh& made) {
+void open_surfaces(const std::vector<CaseInterface>& interfaces, CaseMesh& made) {
   made.open.resize(interfaces.size());
   for (const std::vector<std::size_t>& together : opened_together(interfaces)) {
     std::vector<std::string> surfaces;
-    for (const std::size_t k : together) surfaces.push_back(interfaces[k].table("surface").text("group"));
-    const Values& first = interfaces[together.front()].table("surface");
-    std::vector<OpenedSurface> opened = split(made.mesh, surfaces, first.texts("lower"), first.where("group"));
+    for (const std::size_t k : together) surfaces.push_back(interfaces[k].surface()->group->name);
+    const CaseSurface& first = *interfaces[together.front()].surface();
+    std::vector<OpenedSurface> opened = split(made.mesh, surfaces, first.lower, first.group->where());
     for (std::size_t i = 0; i < together.size(); ++i) made.open[together[i]] = std::move(opened[i].faces);
   }
   for (std::size_t k = 0; k < interfaces.size(); ++k)
-    if (const Values* surface = table_if(interfaces[k], "surface"); surface && drawn_apart(*surface))
-      made.open[k] = facing_pairs(made.mesh, surface->text("lower_group"), surface->text("upper_group"), surface->where("upper_group"));
+    if (const CaseSurface* surface = interfaces[k].surface(); surface && drawn_apart(*surface))
+      made.open[k] = facing_pairs(made.mesh, surface->lower_group->name, surface->upper_group->name, surface->upper_group->where());
 }
 
 const Group& group_named(const Mesh& mesh, const NameUsed& used, const std::string& what) {
@@ -136,7 +95,7 @@ bool beams_alone(const Values& root) {
 }
 
 /// Faces that do not lie in a plane of equal z are taken for a mesh in space, which has nothing to be solid.
-void check_solid(const Mesh& mesh, const Values& table) {
+void check_solid(const Mesh& mesh, const NameUsed& file) {
   const auto fills = [&](const CellBlock& block) { return info(block.cell).dimension == mesh.dimension; };
   if (mesh.dimension == 2 || std::ranges::any_of(mesh.blocks, fills)) return;
   std::string found = "no solid cells";
@@ -145,37 +104,37 @@ void check_solid(const Mesh& mesh, const Values& table) {
     const auto [least, most] = std::ranges::minmax(mesh.nodes, {}, along);
     found += fmt::format("{} {} from {:g} to {:g}", axis == 'x' ? ", nodes with" : ",", axis, along(least), along(most));
   }
-  fail(table, "file", "cells of space (tet, hex, wedge), or a mesh in the plane: x to the right, y up, all z equal", found);
+  fail(file, "cells of space (tet, hex, wedge), or a mesh in the plane: x to the right, y up, all z equal", found);
 }
 
 }  // namespace
 
-std::shared_ptr<const CaseMesh> mesh_of_case(const Values& root, const std::string& file, const MeshReader& read_mesh) {
-  const Values* mesh = table_if(root, "mesh");
+std::shared_ptr<const CaseMesh> mesh_of_case(const Case& read, const MeshReader& read_mesh) {
+  const Values& root = read.values;
+  const std::optional<CaseMeshSource>& mesh = read.input->mesh;
   if (!mesh) {
-    for (const Values& interface : root.tables("interface"))
-      for (const char* key : {"surface", "cut"})
-        if (interface.has(key)) fail(interface, key, fmt::format("a [mesh] for the {}", key), "none");
+    for (const CaseInterface& interface : read.input->interfaces) {
+      const char* key = interface.surface() ? "surface" : interface.cut() ? "cut" : nullptr;
+      if (key != nullptr) fail(interface, key, fmt::format("a [mesh] for the {}", key), "none");
+    }
     for (const ElementPlace place : {ElementPlace::cells, ElementPlace::faces})
       if (const auto tables = element_tables(root, place); !tables.empty()) fail(*tables.front(), "", "a [mesh] with this group", "none");
     return nullptr;
   }
-  const bool from_file = mesh->has("file");
-  if (from_file == mesh->has("soil_box")) fail(*mesh, "", "either file or soil_box", from_file ? "both" : "neither");
   auto made = std::make_shared<CaseMesh>();
-  if (from_file) {
+  if (mesh->file) {
     assert(read_mesh);
-    const Where where = mesh->where("file");
-    made->from = (std::filesystem::path(file).parent_path() / mesh->text("file")).lexically_normal().string();
-    made->mesh = read_mesh(made->from, where, mesh->has("name") ? mesh->text("name") : "");
+    const Where where = mesh->file->where();
+    made->from = (std::filesystem::path(read.file).parent_path() / mesh->file->name).lexically_normal().string();
+    made->mesh = read_mesh(made->from, where, mesh->name);
     check_mesh(made->mesh, {made->from, 0});
-    if (!beams_alone(root)) check_solid(made->mesh, *mesh);
+    if (!beams_alone(root)) check_solid(made->mesh, *mesh->file);
   } else {
     made->from = "soil_box";
-    made->mesh = make_soil_box(mesh->table("soil_box"));
+    made->mesh = make_soil_box(*mesh->soil_box, *mesh->box_table);
   }
-  cut_planes(root, *made);
-  open_surfaces(root.tables("interface"), *made);
+  cut_planes(read, *made);
+  open_surfaces(read.input->interfaces, *made);
   if (!made->mesh.parts.empty()) made->pieces = drawn_mesh(made->mesh);
   return made;
 }
@@ -298,16 +257,16 @@ CellRule rule_on_face(const Mesh& mesh, CellId face, std::span<const int> nodes,
   return rule;
 }
 
-double thickness_of(const CaseSolids& solids, const std::vector<CutFace>& faces, const Values& cut) {
-  if (cut.has("thickness")) return cut.number("thickness");
+double thickness_of(const CaseSolids& solids, const std::vector<CutFace>& faces, const CaseCut& cut) {
+  if (cut.thickness) return *cut.thickness;
   double least = std::numeric_limits<double>::infinity();
   for (const CutFace& face : faces)
     least = std::min({least, solids.of(face.lower).section.thickness, solids.of(face.upper).section.thickness});
   return least;
 }
 
-double thickness_of(const CaseSolids& solids, const std::vector<FacePair>& faces, const Values& surface) {
-  if (surface.has("thickness")) return surface.number("thickness");
+double thickness_of(const CaseSolids& solids, const std::vector<FacePair>& faces, const CaseSurface& surface) {
+  if (surface.thickness) return *surface.thickness;
   double least = std::numeric_limits<double>::infinity(), most = 0;
   for (const FacePair& face : faces) {
     const double thickness = std::min(solids.beside(face.lower)->section.thickness, solids.beside(face.upper)->section.thickness);

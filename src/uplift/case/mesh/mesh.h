@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "uplift/case/case.h"
+#include "uplift/case/schema/case_input.h"
 #include "uplift/elements/element_entry.h"
 #include "uplift/mesh/cut.h"
 #include "uplift/mesh/sides.h"
@@ -28,7 +29,7 @@ struct CaseMesh {
 
 /// Reads or makes the mesh, checks it, opens it. Surfaces with the same lower side are opened together, others one after another. Null when
 /// the case has none. Throws InputError: both a file and a soil box or neither, groups and surfaces that do not fit.
-std::shared_ptr<const CaseMesh> mesh_of_case(const Values& root, const std::string& file, const MeshReader& read_mesh);
+std::shared_ptr<const CaseMesh> mesh_of_case(const Case& read, const MeshReader& read_mesh);
 
 /// What the solids of a case are made of. Throws InputError unless every cell has exactly one of them. An edge is a side of a cell: in
 /// space a face.
@@ -77,14 +78,14 @@ std::vector<std::pair<int, double>> tributary_areas(const CaseSolids& solids, co
 CellRule rule_on_face(const Mesh& mesh, CellId face, std::span<const int> nodes, int degree);
 
 /// Cuts the mesh along the planes of the case's [interface.cut], and fills `cut`.
-void cut_planes(const Values& root, CaseMesh& made);
+void cut_planes(const Case& read, CaseMesh& made);
 /// Normal of the plane of a [interface.cut], from its lower to its upper side.
-Vec3 normal_of_cut(const Values& cut, int dimension);
-double thickness_of(const CaseSolids& solids, const std::vector<CutFace>& faces, const Values& cut);
+Vec3 normal_of_cut(const CaseCut& cut, int dimension);
+double thickness_of(const CaseSolids& solids, const std::vector<CutFace>& faces, const CaseCut& cut);
 
 /// Thickness of an opened surface [m]: the smaller one of the solids on both sides. Throws InputError at the table when it changes along
 /// the surface.
-double thickness_of(const CaseSolids& solids, const std::vector<FacePair>& faces, const Values& surface);
+double thickness_of(const CaseSolids& solids, const std::vector<FacePair>& faces, const CaseSurface& surface);
 
 /// Which nodes of the model hang together with the given ones by elements, rigid bodies, ties and inextensible beams.
 std::vector<char> part_of(const Model& model, const std::vector<int>& nodes);

@@ -20,8 +20,16 @@ int dimension_of_nodes(const Values& root) {
 
 }  // namespace
 
-CaseInput case_input(const Values& root, const Mesh* mesh) {
+CaseInput input_of_mesh(const Values& root) {
   CaseInput made;
+  if (const Values* mesh = table_if(root, "mesh")) made.mesh = case_mesh_source(*mesh);
+  made.ties = all(root, "tie", case_tie);
+  made.interfaces = all(root, "interface", case_interface);
+  made.foundations = all(root, "foundation", case_foundation);
+  return made;
+}
+
+void add_rest_of_input(const Values& root, const Mesh* mesh, CaseInput& made) {
   const Space space = made.space = {mesh != nullptr ? mesh->dimension : dimension_of_nodes(root)};
   made.nodes = all(root, "nodes", case_node, space);
   made.masses = all(root, "mass", case_mass, space);
@@ -37,7 +45,6 @@ CaseInput case_input(const Values& root, const Mesh* mesh) {
   made.energy = case_energy(root.table("energy"));
   made.limits = case_limits(root.table("limits"));
   made.output = case_output(root.table("output"), space);
-  return made;
 }
 
 }  // namespace uplift

@@ -1,5 +1,6 @@
 #pragma once
 #include "uplift/case/schema/analysis_sections.h"
+#include "uplift/case/schema/interface_sections.h"
 #include "uplift/case/schema/output_sections.h"
 #include "uplift/case/schema/structure_sections.h"
 
@@ -9,6 +10,11 @@ struct Mesh;
 
 /// The checked case file as structs, tables in the order of the file. They point into the values that they were read from.
 struct CaseInput {
+  std::optional<CaseMeshSource> mesh;
+  std::vector<CaseTie> ties;
+  std::vector<CaseInterface> interfaces;
+  std::vector<CaseFoundation> foundations;
+  // what depends on whether the model is plane
   Space space;
   std::vector<CaseNode> nodes;
   std::vector<CaseMass> masses;
@@ -26,7 +32,9 @@ struct CaseInput {
   CaseOutput output;
 };
 
-/// Plane or space: as the mesh, else as the first node. Throws InputError.
-CaseInput case_input(const Values& root, const Mesh* mesh);
+/// The tables by which the mesh is made and opened. Throws InputError, as the next one.
+CaseInput input_of_mesh(const Values& root);
+/// All others. Plane or space: as the mesh, else as the first node.
+void add_rest_of_input(const Values& root, const Mesh* mesh, CaseInput& made);
 
 }  // namespace uplift

@@ -1,8 +1,8 @@
 #include "uplift/case/schema/interface_sections.h"
 
+#include <fmt/format.h>
+
 #include "uplift/case/build/profile.h"
-#include "uplift/case/schema/mesh_sections.h"
-#include "uplift/laws/foundation.h"
 
 namespace uplift {
 namespace {
@@ -18,6 +18,10 @@ const Section& bed_section() {
              number("damping", "Pa s/m", "viscous damping of the ground per area").nonnegative().standard(0.0),
              number("mass", "kg/m2", "mass of the moving ground per area").nonnegative().standard(0.0)}};
   return s;
+}
+
+CaseBed case_bed(const Values& table) {
+  return {{&table}, table.number("stiffness"), table.number("damping"), table.number("mass")};
 }
 
 const Section& footing_section() {
@@ -44,6 +48,28 @@ const Section& footing_section() {
   return s;
 }
 
+CaseFooting case_footing(const Values& table) {
+  const std::string& rule = table.text("rule");
+  const Values *bed = table_if(table, "bed"), *soil = table_if(table, "soil");
+  if (soil && bed) fail(*soil, "", "either soil, which makes the law of the joint the ground, or bed, ground below the joint", "both");
+  if (soil && soil->flag("radiation")) fail(*soil, "radiation", "false: the dashpot of a joint is that of its law (c = \"soil\")", "true");
+  return {{&table},
+          name_used(table, "body"),
+          table.number("width"),
+          table.number("thickness"),
+          number_if(table, "length"),
+          table.integer("points"),
+          table.has("points_across") ? std::optional(table.integer("points_across")) : std::nullopt,
+          table.number("azimuth"),
+          rule == "nodal"      ? FootingRule::nodal
+          : rule == "midpoint" ? FootingRule::midpoint
+                               : FootingRule::gauss,
+          vector_used(table, "offset"),
+          vector_used(table, "normal"),
+          bed ? std::optional(case_bed(*bed)) : std::nullopt,
+          soil};
+}
+
 const Section& pairs_section() {
   static const Section s{"pairs", "isolated pairs of nodes",
                          Fields{texts("upper", "nodes of the structure"),
@@ -51,6 +77,10 @@ const Section& pairs_section() {
                                 vector("normal", "1", "from the ground to the structure; absent: up").optional(),
                                 number("area", "m2", "area of each pair").positive()}};
   return s;
+}
+
+CasePairs case_pairs(const Values& table) {
+  return {{&table}, names_used(table, "upper"), names_used(table, "lower"), vector_used(table, "normal"), table.number("area")};
 }
 
 const Section& line_section() {
@@ -62,6 +92,15 @@ const Section& line_section() {
              choice("quadrature", {"nodal", "gauss"}, "integration points of an element").standard("nodal"),
              number("thickness", "m", "length out of the plane").positive().standard(1.0)}};
   return s;
+}
+
+CaseLine case_line(const Values& table) {
+  return {{&table},
+          names_used(table, "upper"),
+          names_used(table, "lower"),
+          table.integer("nodes_per_element"),
+          table.text("quadrature") == "nodal" ? LineQuadrature::nodal : LineQuadrature::gauss,
+          table.number("thickness")};
 }
 
 const Section& water_section() {
@@ -76,6 +115,11 @@ const Section& water_section() {
           number("head", "m", "pressure head, the same at every point").nonnegative().optional(),
           number("unit_weight", "Pa/m", "unit weight of the water, 1 Pa/m = 1 N/m3").positive().standard(9810.0)}};
   return s;
+}
+
+CaseWater case_water(const Values& table) {
+  first_of_two(table, "level", "head");
+  return {{&table}, number_if(table, "level"), number_if(table, "head").value_or(0), table.number("unit_weight")};
 }
 
 }  // namespace
@@ -94,6 +138,20 @@ const Section& foundation_section() {
              table("soil", footing_soil_section(), "gives the stiffnesses that the model leaves out").optional(),
              part("model", foundation_models, "what the ground does")}};
   return s;
+}
+
+CaseFoundation case_foundation(const Values& table) {
+  const Values* soil = table_if(table, "soil");
+  return {{&table},
+          name_used(table, "name"),
+          name_used(table, "body"),
+          *footprint_shape(table.text("shape")),
+          table.number("width"),
+          number_if(table, "length"),
+          vector_used(table, "offset"),
+          soil,
+          soil != nullptr && soil->flag("radiation"),
+          &table.part("model")};
 }
 
 const Section& interface_section() {
@@ -118,6 +176,27 @@ const Section& interface_section() {
               .optional(),
           part("law", interface_behaviours, "what it does: a traction law or a cone (contact by constraint)")}};
   return s;
+}
+
+CaseInterface case_interface(const Values& table) {
+  CaseInterface made{{&table}, name_used(table, "name"), {}, table.is_word("gap"), 0, table_if(table, "gap_profile"), {},
+                     {},       &table.part("law")};
+  int kinds = 0;
+  const auto take = [&](const char* key, auto read) {
+    if (!table.has(key)) return;
+    made.place = read(table.table(key));
+    ++kinds;
+  };
+  take("footing", case_footing);
+  take("pairs", case_pairs);
+  take("line", case_line);
+  take("surface", case_surface);
+  take("cut", case_cut);
+  if (kinds != 1) fail(table, "", "exactly one of footing, pairs, line, surface and cut", kinds == 0 ? "none" : fmt::format("{}", kinds));
+  if (!made.gap_of_geometry) made.gap = table.number("gap");
+  if (const Values* water = table_if(table, "water")) made.water = case_water(*water);
+  if (table.has("role")) made.role = table.text("role") == "base" ? Role::base : Role::wall;
+  return made;
 }
 
 }  // namespace uplift

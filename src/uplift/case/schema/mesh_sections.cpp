@@ -1,5 +1,12 @@
 #include "uplift/case/schema/mesh_sections.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "uplift/base/text.h"
+#include "uplift/mesh/cells.h"
+
 namespace uplift {
 namespace {
 
@@ -64,6 +71,41 @@ const Section& soil_box_section() {
   return s;
 }
 
+Cell cell_named(const std::string& name) {
+  return std::ranges::find(all_cells(), name, &CellInfo::name)->cell;
+}
+
+SoilBox::Part part_from(const Values* table) {
+  SoilBox::Part part;
+  if (!table) return part;
+  part.width = {table->number("width"), table->number(table->has("length") ? "length" : "width")};
+  part.height = table->number("height");
+  part.size = table->number("size");
+  if (table->items().contains("offset")) part.offset = {table->number("offset"), table->number("offset_y")};
+  return part;
+}
+
+SoilBox soil_box_of(const Values& box) {
+  SoilBox made;
+  const Values& soil = box.table("soil");
+  made.dimension = soil.has("length") ? 3 : 2;
+  made.soil.width = {soil.number("width"), soil.number(soil.has("length") ? "length" : "width")};
+  made.soil.size = soil.number("size");
+  made.soil.layers.clear();
+  for (const Values& layer : soil.tables("layers")) made.soil.layers.push_back({layer.number("thickness"), layer.number("size")});
+  if (made.soil.layers.empty()) fail(soil, "layers", "at least one layer", "none");
+  made.raft = part_from(table_if(box, "raft"));
+  made.block = part_from(table_if(box, "block"));
+  made.embedment = box.number("embedment");
+  made.growth = box.number("growth");
+  made.cell = box.has("cell") ? cell_named(box.text("cell")) : made.dimension == 2 ? Cell::quad4 : Cell::hex8;
+  if (info(made.cell).dimension != made.dimension)
+    fail(box, "cell",
+         made.dimension == 2 ? "a cell of the plane (soil.length makes the mesh one in space)" : "a cell of space, for example hex8",
+         in_quotes(box.text("cell")));
+  return made;
+}
+
 }  // namespace
 
 const Section& mesh_section() {
@@ -77,6 +119,14 @@ const Section& mesh_section() {
   return s;
 }
 
+CaseMeshSource case_mesh_source(const Values& table) {
+  const bool file = table.has("file");
+  const Values* box = table_if(table, "soil_box");
+  if (file == (box != nullptr)) fail(table, "", "either file or soil_box", file ? "both" : "neither");
+  return {
+      {&table}, name_if(table, "file"), text_or(table, "name", ""), box != nullptr ? std::optional(soil_box_of(*box)) : std::nullopt, box};
+}
+
 const Section& tie_section() {
   static const Section s{
       "tie",
@@ -85,6 +135,10 @@ const Section& tie_section() {
       Fields{text("group", "group of the mesh"), text("to", "group of the opposite side"),
              texts("unknowns", "any of ux, uy; in space of ux, uy, uz")}};
   return s;
+}
+
+CaseTie case_tie(const Values& table) {
+  return {{&table}, name_used(table, "group"), name_used(table, "to"), names_used(table, "unknowns")};
 }
 
 const Section& surface_section() {
@@ -102,6 +156,25 @@ const Section& surface_section() {
                  .positive()
                  .optional()}};
   return s;
+}
+
+CaseSurface case_surface(const Values& table) {
+  CaseSurface surface{{&table},
+                      name_if(table, "group"),
+                      table.texts("lower"),
+                      name_if(table, "lower_group"),
+                      name_if(table, "upper_group"),
+                      table.text("quadrature") == "nodal",
+                      number_if(table, "thickness")};
+  const bool lower = table.has("lower");
+  const bool apart = surface.lower_group && surface.upper_group, opened = surface.group && lower;
+  const int given = surface.lower_group.has_value() + surface.upper_group.has_value() + surface.group.has_value() + lower;
+  if (given != 2 || !(apart || opened))
+    fail(table, "", "group and lower, or lower_group and upper_group",
+         given == 0  ? "none of them"
+         : given < 2 ? "one of them"
+                     : fmt::format("{} of them", given));
+  return surface;
 }
 
 const Section& cut_section() {
@@ -141,6 +214,48 @@ const Section& cut_section() {
               .positive()
               .optional()}};
   return s;
+}
+
+std::optional<VectorUsed> vector_used(const Values& table, std::string_view key) {
+  return table.has(key) ? std::optional(VectorUsed{&table, key}) : std::nullopt;
+}
+
+CaseCut case_cut(const Values& table) {
+  using enum CaseCut::Jump;
+  const auto range = [&](const char* key) -> std::optional<CaseCut::Range> {
+    if (!table.has(key)) return std::nullopt;
+    const std::vector<double>& ends = table.numbers(key);
+    if (ends.size() != 2 || !(ends[0] < ends[1]))
+      fail(table, key, "two numbers, the least and the largest",
+           ends.size() == 2 ? fmt::format("{:g} and {:g}", ends[0], ends[1]) : fmt::format("{} numbers", ends.size()));
+    return CaseCut::Range{ends[0], ends[1]};
+  };
+  const std::string& jump = table.text("jump");
+  CaseCut cut{{&table},
+              table.texts("through"),
+              number_if(table, "level"),
+              vector_used(table, "point"),
+              vector_used(table, "normal"),
+              text_or(table, "upper", ""),
+              range("x"),
+              range("y"),
+              range("ground_x"),
+              range("ground_y"),
+              number_if(table, "height"),
+              name_if(table, "free"),
+              jump == "linear"     ? linear
+              : jump == "constant" ? constant
+                                   : rigid,
+              jump,
+              table.number("mesh_shift"),
+              number_if(table, "thickness")};
+  if (cut.level.has_value() == cut.point.has_value() || (cut.point && !cut.normal))
+    fail(table, "", "either level, or point and normal", cut.level ? "both" : cut.point ? "no normal" : "neither");
+  if (cut.level && cut.normal) fail(table, "normal", "either level, or point and normal", "level and normal");
+  if (cut.through.empty()) fail(table, "through", "at least one group of cells", "none");
+  if (std::ranges::find(cut.through, cut.upper) != cut.through.end())
+    fail(table, "upper", "another group than those of `through`, or none", in_quotes(cut.upper));
+  return cut;
 }
 
 }  // namespace uplift
