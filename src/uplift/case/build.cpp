@@ -98,7 +98,7 @@ void check_foundation(const Values& model, bool cone, const Values* method) {
 /// Method and rule; the method must suit the behaviours.
 void add_method(const Case& read, const RunSpec& spec, BuiltCase& built) {
   const Values& root = read.values;
-  const Values* method = spec.method ? spec.method : root.has("method") ? &root.part("method") : nullptr;
+  const Values* method = spec.method ? spec.method : read.input->method;
   bool cone = false;
   for (const Interface& interface : built.model.interfaces) cone = cone || interface.cone != nullptr;
   for (std::size_t k = 0; k < built.model.interfaces.size(); ++k)
@@ -111,7 +111,7 @@ void add_method(const Case& read, const RunSpec& spec, BuiltCase& built) {
   const Values automatic = check_part(Raw{std::string(standard_method(cone)), root.where(), "method"}, contact_methods());
   built.plan.method = make_part(method_catalog(), method ? *method : automatic);
   // a joint that gives way keeps its velocity: a correction is for constraints, and for a stiff law where the user asks for it
-  const Values* impact = spec.bonded ? nullptr : spec.impact ? spec.impact : root.has("impact") ? &root.part("impact") : nullptr;
+  const Values* impact = spec.bonded ? nullptr : spec.impact ? spec.impact : read.input->impact;
   const Values standard =
       check_part(Raw{std::string(cone && !spec.bonded ? "project_hold" : "none"), root.where(), "impact"}, impact_rules());
   built.plan.impact = make_part(impact_catalog(), impact ? *impact : standard);
@@ -341,7 +341,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
   put_name(spec, plan);
   plan.expected_to_fail = spec.expected_to_fail;
   plan.solver = bulk_solver(read);
-  plan.interface_solver = interface_solver(root.text("interface_solver"));
+  plan.interface_solver = interface_solver(read.input->interface_solver);
   adapt_laws(read, spec, built);
   if (released) {
     check_release(read.input->stages, plan.stages);
@@ -366,7 +366,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
   if (!spec.stiffness_ratio) add_floors(read, built);
   built.verdict_request = verdict_request(root, built);
   plan.window = built.verdict_request.window;
-  if (const Values* compare = table_if(root, "compare")) check_columns(*compare, "agree_on", plan.requests);
+  if (read.input->compare) check_columns(read.input->compare->agree_on, plan.requests);
   check_history_memory(read, built);
   return built;
 }

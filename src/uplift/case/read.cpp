@@ -78,13 +78,13 @@ std::vector<std::string> input_files(const Case& read) {
         const std::filesystem::path path = path_beside(law.where("library"), law.text("library"));
         if (std::filesystem::is_regular_file(path)) files.push_back(path.lexically_normal().string());  // else the law refuses it
       }
-  if (read.values.has("reduced_model"))
-    files.push_back(path_beside(read.values.where("reduced_model"), read.values.text("reduced_model")).lexically_normal().string());
+  if (const std::optional<std::string>& file = read.input->reduced_model)
+    files.push_back(path_beside(read.values.where("reduced_model"), *file).lexically_normal().string());
   for (const Values& record : read.values.tables("record"))
     if (record.has("file")) files.push_back(record_path(record));
-  for (const Values& variant : read.values.tables("variant"))
-    if (variant.has("case")) {
-      const std::filesystem::path path = path_beside(variant.where("case"), variant.text("case"));
+  for (const CaseVariant& variant : read.input->variants)
+    if (variant.other_case) {
+      const std::filesystem::path path = path_beside(variant.other_case->where(), variant.other_case->name);
       if (std::filesystem::is_regular_file(path)) files.push_back(path.lexically_normal().string());  // else `compare` refuses it
     }
   return files;

@@ -8,6 +8,7 @@
 #include "uplift/base/format.h"
 #include "uplift/base/text.h"
 #include "uplift/case/mesh/mesh.h"
+#include "uplift/case/schema/case_input.h"
 #include "uplift/cli/console.h"
 #include "uplift/cli/load.h"
 #include "uplift/io/report/motions.h"
@@ -88,7 +89,7 @@ void print(const LoadedCase& loaded, const CheckedCase& checked) {
   if (found.systems.factored + found.systems.iterated > 0)
     line("interface solver",
          fmt::format("{}; in the first steps {} systems with a new factor, {} by conjugate residuals (one factor kept, or none)",
-                     loaded.read.values.text("interface_solver"), found.systems.factored, found.systems.iterated));
+                     loaded.read.input->interface_solver, found.systems.factored, found.systems.iterated));
   if (found.bulk)
     line("memory", fmt::format("about {}, {} of it the factor of a step; {} are free{}", format_bytes(found.bulk->bytes),
                                format_bytes(found.bulk->step.bytes), format_bytes(found.bulk->available),

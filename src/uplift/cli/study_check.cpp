@@ -80,7 +80,7 @@ std::string json_of(const Forecast& forecast, const std::vector<std::string>& wa
 
 void print(const Study& study, const Forecast& forecast) {
   const StudyPlan& plan = study.of.plan;
-  say(fmt::format("{}: {}", study.name, study.of.read.values.text("title")));
+  say(fmt::format("{}: {}", study.name, study.of.read.input->title));
   line("motions", fmt::format("{}", study.of.motions.size()));
   line("samples",
        fmt::format("{} of {} variables, {}", study.of.samples.size(), plan.variables.size(), plan.crossed ? "crossed" : "paired"));

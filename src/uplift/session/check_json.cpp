@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "uplift/case/mesh/mesh.h"
+#include "uplift/case/schema/case_input.h"
 #include "uplift/io/results/interface_points.h"
 #include "uplift/io/text/json_writer.h"
 #include "uplift/session/check.h"
@@ -100,7 +101,7 @@ std::string check_json(const LoadedCase& loaded, const CheckedCase& checked) {
       .key("frequencies_base_free")
       .numbers(found.base_free);
   json.member("steps", found.steps).member("suggested_step", found.suggested_step).member("seconds_per_step", found.seconds_per_step);
-  json.member("interface_solver", loaded.read.values.text("interface_solver"))
+  json.member("interface_solver", loaded.read.input->interface_solver)
       .member("interface_systems_factored", found.systems.factored)
       .member("interface_systems_iterated", found.systems.iterated);
   json.key("step_bounds").begin_array();

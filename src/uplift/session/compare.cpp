@@ -205,9 +205,9 @@ Results compare_case(const LoadedCase& loaded, const Control& control) {
   ComparisonSummary& compared = results.comparison.emplace();
   compared.motions = motion_tables(results.specs, results.built, results.runs);
   const OverMotions over = show_hardest(loaded, control, compared.motions, results);
-  const Values* compare = loaded.read.values.has("compare") ? &loaded.read.values.table("compare") : nullptr;
-  compared.band = compare ? compare->number("band") : 0.02;
-  if (compare) compared.columns = compare->texts("agree_on");
+  const CaseComparison asked = loaded.read.input->compare.value_or(CaseComparison{});
+  compared.band = asked.band;
+  for (const NameUsed& column : asked.agree_on) compared.columns.push_back(column.name);
   compared.agreement = agreement(results.runs, results.specs, results.built, compared.columns, compared.band);
   compared.sweep = sweep_table(sweep.specs, sweep.runs);
   results.floors = floor_answers(results.built.front().plan, results.runs, results.specs);

@@ -7,6 +7,7 @@
 
 #include "uplift/base/file.h"
 #include "uplift/case/decided.h"
+#include "uplift/case/schema/case_input.h"
 #include "uplift/io/mesh/file.h"
 #include "uplift/io/text/json_reader.h"
 #include "uplift/io/text/toml.h"
@@ -27,9 +28,9 @@ LoadedCase checked(Raw raw, const std::string& text, const std::string& file, co
   loaded.read = check_case(loaded.raw, file, loaded.read_mesh);
   Provenance& from = loaded.from;
   from.reduced = read_reduced_model_of(loaded.read.values);
-  if (from.reduced != nullptr) from.reduced_file = loaded.read.values.text("reduced_model");
-  from.title = loaded.read.values.text("title");
-  if (loaded.read.values.has("description")) from.subtitle = loaded.read.values.text("description");
+  if (from.reduced != nullptr) from.reduced_file = *loaded.read.input->reduced_model;
+  from.title = loaded.read.input->title;
+  from.subtitle = loaded.read.input->description;
   from.command = command;
   from.version = UPLIFT_VERSION;
 #if defined(__clang__)

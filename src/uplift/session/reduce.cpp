@@ -11,6 +11,7 @@
 
 #include "uplift/base/file.h"
 #include "uplift/base/text.h"
+#include "uplift/case/schema/case_input.h"
 #include "uplift/dynamics/plastic_bulk.h"
 #include "uplift/model/matrix_sum.h"
 #include "uplift/reduction/projection.h"
@@ -167,8 +168,8 @@ ControlErrors control_errors(const LoadedCase& loaded, const ReducedModel& reduc
   RunSpec own = runs_of_case(loaded.read).front();
   own.pictures = false;
   std::vector<const Values*> motions{nullptr};
-  if (loaded.read.values.has("compare"))
-    for (const Values& motion : loaded.read.values.table("compare").tables("motion")) motions.push_back(&motion);
+  if (const std::optional<CaseComparison>& compare = loaded.read.input->compare)
+    for (const CaseNamed& motion : compare->motions) motions.push_back(motion.table);
   ControlErrors errors;
   errors.runs = options.controls;
   errors.least_scale = options.least_scale, errors.most_scale = options.most_scale;

@@ -11,6 +11,7 @@
 #include "uplift/base/file.h"
 #include "uplift/base/format.h"
 #include "uplift/case/advice/content.h"
+#include "uplift/case/schema/case_input.h"
 #include "uplift/study/study_case.h"
 
 namespace uplift {
@@ -298,10 +299,10 @@ TrustAnswer trust_answer(const Case& read, const TrustSamples& samples, const Tr
     const TrustChange& change = samples.samples[i].change;
     made.runs.push_back(run_of(change, results[i]));
     all.repetitions.push_back({&change, made.runs.back().counts() ? &*results[i] : nullptr});
-    if (change.choice == joint_stiffness) made.interior = read.values.table("trust").integer("interior");
+    if (change.choice == joint_stiffness) made.interior = read.input->trust.interior;
   }
   made.left_out = samples.left_out;
-  made.accepted = read.values.table("trust").number("spectrum_band");
+  made.accepted = read.input->trust.spectrum_band;
   made.complete = std::ranges::all_of(results, [](const auto& each) { return each.has_value(); });
   if (!made.base.counts() || made.counted() == 0) return made;
   all.numbers = numbers_of(base.built, base.run, base.bonded);

@@ -40,7 +40,7 @@ bool is_cone(const Values& law) {
 /// The contact method that a run of the case takes.
 Values method_values(const Case& read) {
   const Values& root = read.values;
-  if (root.has("method")) return root.part("method");
+  if (read.input->method) return *read.input->method;
   const bool cones = std::ranges::any_of(read.input->interfaces, [](const CaseInterface& each) { return is_cone(*each.law); });
   return check_part(Raw{std::string(standard_method(cones)), root.where(), "method"}, contact_methods());
 }
@@ -72,8 +72,7 @@ std::vector<CaseEdit> replaced(const std::string& path, const Values& law, const
 
 class Planner {
  public:
-  explicit Planner(const Case& read)
-      : root_(read.values), input_(*read.input), trust_(root_.table("trust")), method_(method_values(read)) {}
+  explicit Planner(const Case& read) : input_(*read.input), trust_(input_.trust), method_(method_values(read)) {}
 
   TrustPlan plan() {
     halve_step();
@@ -116,15 +115,14 @@ class Planner {
 
   /// A law of a footing on fixed ground is the soil itself.
   double factor_of(const CaseInterface& interface) const {
-    if (trust_.has("stiffness_factor")) return trust_.number("stiffness_factor");
+    if (trust_.stiffness_factor) return *trust_.stiffness_factor;
     return interface.footing() && !interface.footing()->bed ? of_soil : of_joint;
   }
 
   /// The ends of the sweep, then what lies between an end and the case.
   void change_stiffness() {
-    if (trust_.has("stiffness_factor") && trust_.number("stiffness_factor") == 1)
-      return leave_out(std::string(joint_stiffness), "stiffness_factor = 1");
-    const long parts = trust_.integer("interior") + 1;
+    if (trust_.stiffness_factor == 1.0) return leave_out(std::string(joint_stiffness), "stiffness_factor = 1");
+    const long parts = trust_.interior + 1;
     for (long part = parts; part > 0; --part)
       for (const bool stiffer : {true, false}) {
         const std::string suffix = part == parts ? "" : fmt::format("_{}", part);
@@ -155,7 +153,7 @@ class Planner {
     }
     if (regularises()) {
       const char* key = has_number(method_, "stiffness") ? "stiffness" : "factor";
-      const double factor = add_factor(trust_.has("stiffness_factor") ? trust_.number("stiffness_factor") : of_joint);
+      const double factor = add_factor(trust_.stiffness_factor.value_or(of_joint));
       edits.push_back({std::string("method.") + key, (stiffer ? factor : 1 / factor) * method_.number(key)});
     }
     if (edits.empty()) {
@@ -197,7 +195,7 @@ class Planner {
     std::vector<CaseEdit> edits;
     const auto tighter = [&](const char* key) { return std::max(least_tolerance, 0.1 * method_.number(key)); };
     const double tolerance = tighter("tolerance");
-    if (!root_.has("method")) edits.push_back({"method", method_.type()});
+    if (!input_.method) edits.push_back({"method", method_.type()});
     edits.push_back({"method.tolerance", tolerance});
     if (has_number(method_, "gap_tolerance")) edits.push_back({"method.gap_tolerance", tighter("gap_tolerance")});
     if (const std::optional<double>& gap = input_.limits.gap_tolerance) edits.push_back({"limits.gap_tolerance", 0.1 * *gap});
@@ -240,7 +238,7 @@ class Planner {
   }
 
   void refine() {
-    const double factor = trust_.number("mesh_factor");
+    const double factor = trust_.mesh_factor;
     if (!input_.mesh || !input_.mesh->soil_box) return leave_out("mesh", input_.mesh ? "the mesh is a file" : "the case has no mesh");
     if (factor == 1) return leave_out("mesh", "mesh_factor = 1");
     const SoilBox& box = *input_.mesh->soil_box;
@@ -257,7 +255,7 @@ class Planner {
 
   /// Planes that the mesh ignores: the mesh is moved beside them.
   void move_mesh() {
-    const double share = trust_.number("mesh_shift");
+    const double share = trust_.mesh_shift;
     const std::vector<CaseInterface>& interfaces = input_.interfaces;
     if (std::ranges::none_of(interfaces, [](const CaseInterface& each) { return each.cut() != nullptr; })) return;
     if (share == 0) return leave_out("place of the mesh", "mesh_shift = 0");
@@ -275,9 +273,8 @@ class Planner {
   /// The method has a stiffness of its own in the place of constraints.
   bool regularises() const { return method_.items().contains("stiffness"); }
 
-  const Values& root_;
   const CaseInput& input_;
-  const Values& trust_;
+  const CaseTrust& trust_;
   const Values method_;
   TrustPlan plan_;
 };

@@ -243,7 +243,7 @@ void warn_floors(const RunSpec& spec, const BuiltCase& built, std::vector<std::s
 void warn_method(const Case& read, const RunSpec& spec, const BuiltCase& built, std::vector<std::string>& said) {
   const Stage* stage = dynamic_stage(built.plan);
   if (!stage || spec.bonded) return;
-  const Values* given = spec.impact ? spec.impact : read.values.has("impact") ? &read.values.part("impact") : nullptr;
+  const Values* given = spec.impact ? spec.impact : read.input->impact;
   const std::string impact = given ? given->type() : built.plan.method->constrains() ? "project_hold" : "none";
   if (built.plan.method->constrains()) {
     if (impact == "none")

@@ -246,10 +246,10 @@ int asked_node(const NodeAsked& asked, const std::string& what, const Names& nod
   return node < 0 ? nodes.find(*asked.node) : node;  // which says what is near
 }
 
-void check_columns(const Values& table, std::string_view key, const std::vector<Request>& requests) {
+void check_columns(const std::vector<NameUsed>& names, const std::vector<Request>& requests) {
   Names columns("column of the output");
   for (const Request& request : requests) columns.add(request.name, {}, {});
-  for (const std::string& name : table.texts(key)) columns.find(name, table.where(key), table.path(key));
+  for (const NameUsed& name : names) columns.find(name);
 }
 
 void add_requests(const Case& read, const CaseNames& names, BuiltCase& built) {

@@ -14,7 +14,7 @@ void add_floors(const Case&, BuiltCase&);
 /// The node of `node`, or the one nearest to `at`, which is noted for `what`; InputError when neither or both are given.
 int asked_node(const NodeAsked& asked, const std::string& what, const Names& nodes, BuiltCase& built);
 /// Throws InputError when a list of texts names a column that there is not.
-void check_columns(const Values& table, std::string_view key, const std::vector<Request>& requests);
+void check_columns(const std::vector<NameUsed>& names, const std::vector<Request>& requests);
 /// True when the full unknown can move: it follows a free unknown or a prescribed motion.
 bool moves(const Model&, int full_unknown);
 

@@ -45,6 +45,20 @@ void add_rest_of_input(const Values& root, const Mesh* mesh, CaseInput& made) {
   made.energy = case_energy(root.table("energy"));
   made.limits = case_limits(root.table("limits"));
   made.output = case_output(root.table("output"), space);
+  made.title = root.text("title");
+  made.description = text_or(root, "description", "");
+  made.bonded = root.flag("bonded");
+  if (const Values* verdict = table_if(root, "verdict")) made.step_check = verdict->flag("step_check");
+  made.method = table_if(root, "method");
+  made.impact = table_if(root, "impact");
+  made.damping = table_if(root, "damping");
+  made.interface_solver = root.text("interface_solver");
+  if (root.has("reduced_model")) made.reduced_model = root.text("reduced_model");
+  made.variants = all(root, "variant", case_variant);
+  if (const Values* compare = table_if(root, "compare")) made.compare = case_comparison(*compare);
+  made.trust = case_trust(root.table("trust"));
+  made.origins = all(root, "origin", case_origin);
+  made.figures = all(root, "figure", case_figure);
 }
 
 }  // namespace uplift

@@ -1,5 +1,6 @@
 #pragma once
 #include "uplift/case/schema/analysis_sections.h"
+#include "uplift/case/schema/comparison_sections.h"
 #include "uplift/case/schema/interface_sections.h"
 #include "uplift/case/schema/output_sections.h"
 #include "uplift/case/schema/structure_sections.h"
@@ -30,6 +31,17 @@ struct CaseInput {
   CaseEnergy energy;
   CaseLimits limits;
   CaseOutput output;
+  // how it is run
+  std::string title, description;
+  bool bonded = true, step_check = true;
+  const Values *method = nullptr, *impact = nullptr, *damping = nullptr;  // null: not stated
+  std::string interface_solver;
+  std::optional<std::string> reduced_model;
+  std::vector<CaseVariant> variants;
+  std::optional<CaseComparison> compare;
+  CaseTrust trust;
+  std::vector<CaseOrigin> origins;
+  std::vector<CaseFigure> figures;
 };
 
 /// The tables by which the mesh is made and opened. Throws InputError, as the next one.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "uplift/case/schema/case_input.h"
 #include "uplift/io/report/motions.h"
 #include "uplift/io/results/histories.h"
 
@@ -302,9 +303,9 @@ void write_chart(JsonWriter& json, const Chart& chart, std::string_view origin) 
 
 void write_figures(JsonWriter& json, const Case& read) {
   json.begin_object();
-  for (const Values& figure : read.values.tables("figure")) {
-    json.key(figure.text("chart")).begin_object().member("origin", figure.text("origin"));
-    if (figure.has("caption")) json.member("caption", figure.text("caption"));
+  for (const CaseFigure& figure : read.input->figures) {
+    json.key(figure.chart).begin_object().member("origin", figure.origin);
+    if (figure.caption) json.member("caption", *figure.caption);
     json.end_object();
   }
   json.end_object();

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "uplift/case/schema/case_input.h"
 #include "uplift/elements/element_entry.h"
 #include "uplift/io/report/motions.h"
 
@@ -95,11 +96,11 @@ void write_choices(JsonWriter& json, const Case& read, const BuiltCase& built) {
   json.begin_array();
   for (const Given& each : given) {
     std::string origin = "user", note;
-    for (const Values& stated : read.values.tables("origin"))
-      for (const std::string& key : stated.texts("keys"))
+    for (const CaseOrigin& stated : read.input->origins)
+      for (const std::string& key : stated.keys)
         if (covers(key, each.key) || (key == "*" && origin == "user")) {
-          origin = stated.text("label");
-          note = key != "*" && stated.has("note") ? stated.text("note") : "";
+          origin = stated.label;
+          note = key != "*" ? stated.note : "";
         }
     json.begin_object().member("what", each.key).member("value", each.value).member("origin", origin).member("note", note).end_object();
   }
