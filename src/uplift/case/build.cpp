@@ -143,7 +143,6 @@ std::vector<double> tuned_masses(const Case& read, const RunSpec& spec) {
 /// The model of a run. `dynamic`: the model without the supports of static stages alone, when that with them is wanted; null: without them.
 Model make_model(const Case& read, const RunSpec& spec, const std::vector<double>& tuned, const Model* dynamic, CaseNames& names,
                  BuiltCase& built) {
-  const Values& root = read.values;
   names.space = read.input->space;
   ModelBuilder builder(names.space);
   add_nodes(*read.input, builder, names);
@@ -155,9 +154,10 @@ Model make_model(const Case& read, const RunSpec& spec, const std::vector<double
   add_functions(read, names);
   add_structure(read, builder, names, tuned, dynamic != nullptr);
   add_ties(*read.input, builder, names);
-  add_faces(root, builder, names);
+  add_faces(read, builder, names);
   if (!dynamic)
-    add_free_field(root, built.plan.stages, spec.damping ? bulk_damping(*spec.damping) : BulkDamping{}, bulk_solver(read), builder, names);
+    add_free_field(*read.input, built.plan.stages, spec.damping ? bulk_damping(*spec.damping) : BulkDamping{}, bulk_solver(read), builder,
+                   names);
   add_interfaces(read, spec, dynamic, builder, names, built);
   add_loads(*read.input, builder, names);
   if (spec.damping) builder.set_damping(bulk_damping(*spec.damping));

@@ -79,8 +79,8 @@ DrawnParts drawn_parts(const Case& read, const BuiltCase& built) {
   for (const CaseLoad& load : read.input->loads)
     parts.loads.push_back({load.name, node_if_named(load.of, model), group_if_named(load.of), force_of(load, model)});
   add_links(root, model, parts.links);
-  for (const Values& face : root.tables("absorbing"))
-    parts.absorbing.push_back({face.text("group"), face.flag("free_field"), face.has("incident")});
+  for (const CaseAbsorbing& face : read.input->absorbing)
+    parts.absorbing.push_back({face.group.name, face.free_field, face.incident.has_value()});
   add_bodies(*read.input, model, parts.bodies);
   return parts;
 }

@@ -59,8 +59,8 @@ bool states_all_stiffnesses(const Values& model, Space space) {
 }
 
 void warn_foundations(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
-  const auto comes_in = [](const Values& face) { return face.has("incident"); };
-  const bool waves = std::ranges::any_of(read.values.tables("absorbing"), comes_in);
+  const auto comes_in = [](const CaseAbsorbing& face) { return face.incident.has_value(); };
+  const bool waves = std::ranges::any_of(read.input->absorbing, comes_in);
   for (const CaseFoundation& foundation : read.input->foundations) {
     const std::string place = fmt::format("{}:{}: ", foundation.where().file, foundation.where().line);
     if (foundation.soil && !foundation.radiates && states_all_stiffnesses(*foundation.model, built.model.space))

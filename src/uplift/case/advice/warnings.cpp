@@ -127,24 +127,23 @@ void warn_duration(const BuiltCase& built, std::vector<std::string>& said) {
 
 /// Absorbing sides take the ground beside the model to be at rest.
 void warn_sides(const Case& read, std::vector<std::string>& said) {
-  const std::vector<Values>& faces = read.values.tables("absorbing");
-  if (std::ranges::none_of(faces, [](const Values& each) { return each.has("incident"); })) return;
-  for (const Values& each : faces)
-    if (!each.has("incident") && !each.flag("free_field"))
+  const std::vector<CaseAbsorbing>& faces = read.input->absorbing;
+  if (std::ranges::none_of(faces, [](const CaseAbsorbing& each) { return each.incident.has_value(); })) return;
+  for (const CaseAbsorbing& each : faces)
+    if (!each.incident && !each.free_field)
       said.push_back(
           fmt::format("{}:{}: {} holds the incident wave back like ground at rest; take free_field = true, or a [[tie]] of opposite sides",
-                      each.where().file, each.where().line, each.text("group")));
+                      each.where().file, each.where().line, each.group.name));
 }
 
 /// Absorbing faces on which a support holds the nodes in the dynamic stages too: what would move along a held direction neither goes out
 /// nor comes in there. An incident wave that moves along the others is none of its business.
 void warn_held_faces(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
   const int dimension = built.model.space.dimension;
-  for (const Values& face : read.values.tables("absorbing"))
+  for (const CaseAbsorbing& face : read.input->absorbing)
     for (const CaseSupport& support : read.input->supports) {
-      if (!support.of.group || support.of.name() != face.text("group") || support.statics_only) continue;
-      const Values* incident = table_if(face, "incident");
-      const Vec3 motion = incident ? incident_motion(*incident, built.model.space) : Vec3::Zero();
+      if (!support.of.group || support.of.name() != face.group.name || support.statics_only) continue;
+      const Vec3 motion = face.incident ? incident_motion(*face.incident, built.model.space) : Vec3::Zero();
       std::string held, stopped;
       int count = 0;
       for (int k = 0; k < dimension; ++k) {
@@ -155,10 +154,10 @@ void warn_held_faces(const Case& read, const BuiltCase& built, std::vector<std::
         if (std::abs(motion[k]) > 1e-9) stopped += (stopped.empty() ? "" : ", ") + unknown;
       }
       const std::string place = fmt::format("{}:{}: {} is held along {} in the dynamic stages too: ", support.where().file,
-                                            support.where().line, face.text("group"), held);
+                                            support.where().line, face.group.name, held);
       if (!stopped.empty())
         said.push_back(fmt::format("{}the incident {} wave, which moves along {}, does not come in there; take stages = \"static\"", place,
-                                   incident->text("wave"), stopped));
+                                   face.incident->wave_word, stopped));
       else if (count == dimension)
         said.push_back(place + "no wave leaves there; take stages = \"static\"");
     }

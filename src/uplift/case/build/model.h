@@ -56,7 +56,7 @@ void add_nodes(const CaseInput& input, ModelBuilder& builder, CaseNames& names);
 /// Nodes and solids of the mesh.
 void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names);
 /// Elements on faces of the mesh, and the waves that come in through absorbing ones; after the functions.
-void add_faces(const Values& root, ModelBuilder& builder, const CaseNames& names);
+void add_faces(const Case& read, ModelBuilder& builder, const CaseNames& names);
 /// A function times an amplitude.
 std::shared_ptr<const TimeFunction> scaled(double factor, std::shared_ptr<const TimeFunction> function);
 /// The force [N] that a load puts on the whole model when its function is 1.

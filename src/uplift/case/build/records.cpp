@@ -187,9 +187,8 @@ std::vector<DrivenBy> motions_wanted(const Case& read) {
   for (const CaseGround& ground : read.input->grounds) wanted.push_back({ground.function, MotionKind::acceleration});
   for (const CaseMotion& motion : read.input->motions)
     if (motion.function) wanted.push_back({*motion.function, MotionKind::displacement, motion.turns});
-  for (const Values& absorbing : read.values.tables("absorbing"))
-    if (const Values* incident = table_if(absorbing, "incident"))
-      wanted.push_back({name_used(*incident, "function"), MotionKind::velocity});
+  for (const CaseAbsorbing& absorbing : read.input->absorbing)
+    if (absorbing.incident) wanted.push_back({absorbing.incident->function, MotionKind::velocity});
   return wanted;
 }
 

@@ -17,21 +17,16 @@ namespace {
 
 /// The faces of one side, in horizontal rows.
 struct SideFaces {
-  const Values& absorbing;
-  NameUsed group;
+  const CaseAbsorbing& absorbing;
   const CaseSolids& solids;
   const std::vector<CellId>& faces;
   int up;
   double tolerance = 0;  // m
 
-  SideFaces(const Values& table, const CaseNames& names)
-      : absorbing(table),
-        group(name_used(table, "group")),
-        solids(names.mesh_for(group)),
-        faces(solids.edges(group)),
-        up(names.space.up()) {
+  SideFaces(const CaseAbsorbing& table, const CaseNames& names)
+      : absorbing(table), solids(names.mesh_for(table.group)), faces(solids.edges(table.group)), up(names.space.up()) {
     double low = INFINITY, high = -INFINITY;
-    for (const int node : solids.nodes(group)) {
+    for (const int node : solids.nodes(table.group)) {
       low = std::min(low, place(node)[up]);
       high = std::max(high, place(node)[up]);
     }
@@ -90,18 +85,17 @@ struct SideFaces {
 };
 
 /// The incident wave that comes in below the foot of a side.
-const Values& wave_below(const Values& root, const SideFaces& side, double foot) {
+const CaseIncident& wave_below(const CaseInput& input, const SideFaces& side, double foot) {
   std::vector<int> feet;
-  for (const int node : side.solids.nodes(side.group))
+  for (const int node : side.solids.nodes(side.absorbing.group))
     if (side.same(side.place(node)[side.up], foot)) feet.push_back(node);
-  const Values* found = nullptr;
-  for (const Values& absorbing : root.tables("absorbing")) {
-    const Values* incident = table_if(absorbing, "incident");
-    if (!incident) continue;
-    const std::vector<int> nodes = side.solids.nodes(name_used(absorbing, "group"));
+  const CaseIncident* found = nullptr;
+  for (const CaseAbsorbing& absorbing : input.absorbing) {
+    if (!absorbing.incident) continue;
+    const std::vector<int> nodes = side.solids.nodes(absorbing.group);
     if (std::ranges::none_of(nodes, [&](int node) { return std::ranges::find(feet, node) != feet.end(); })) continue;
     if (found) fail(side.absorbing, "free_field", "one incident wave below the face", "several");
-    found = incident;
+    found = &*absorbing.incident;
   }
   if (!found) fail(side.absorbing, "free_field", "an absorbing face with an incident wave at its foot", "none");
   return *found;
@@ -198,29 +192,29 @@ class FacePattern {
 
 }  // namespace
 
-void add_free_field(const Values& root, const std::vector<Stage>& stages, const BulkDamping& damping,
+void add_free_field(const CaseInput& input, const std::vector<Stage>& stages, const BulkDamping& damping,
                     const std::shared_ptr<const LinearSolver>& solver, ModelBuilder& builder, const CaseNames& names) {
-  for (const Values& absorbing : root.tables("absorbing")) {
-    if (!absorbing.flag("free_field")) continue;
-    if (absorbing.has("incident")) fail(absorbing, "free_field", "free_field on the sides, the incident wave below them", "both");
+  for (const CaseAbsorbing& absorbing : input.absorbing) {
+    if (!absorbing.free_field) continue;
+    if (absorbing.incident) fail(absorbing, "free_field", "free_field on the sides, the incident wave below them", "both");
     if (!damping.modal.empty()) fail(absorbing, "free_field", "Rayleigh damping with a free field", "modal damping");
     const SideFaces side(absorbing, names);
     std::vector<AbsorbingSection> sections;
-    for (const CellId face : side.faces) sections.push_back(absorbing_ground(absorbing, side.solids.beside(face)->beside(), names.space));
+    for (const CellId face : side.faces)
+      sections.push_back(absorbing_ground(*absorbing.table, side.solids.beside(face)->beside(), names.space));
     const std::vector<ColumnLayer> rows = side.rows();
-    const Values& incident = wave_below(root, side, rows.front().low);
+    const CaseIncident& incident = wave_below(input, side, rows.front().low);
     const Vec3 motion = incident_motion(incident, names.space);
     Axes axes{Vec3::UnitX(), Vec3::Unit(names.space.up())};
     const Vec3 level = motion - motion.dot(axes.up) * axes.up;
     if (level.norm() > 0) axes.along = level.normalized();
     const auto field = std::make_shared<const FreeField>(
-        rows, ColumnWave{level.norm(), motion.dot(axes.up), incident_velocity(incident, names), incident.text("name")}, damping, stages,
-        solver);
+        rows, ColumnWave{level.norm(), motion.dot(axes.up), incident_velocity(incident, names), incident.name}, damping, stages, solver);
     if (!field->why().empty()) fail(absorbing, "free_field", "a free field that can be marched", field->why());
     std::vector<Triplet> pattern;
     FacePattern faces(names, *field, axes, damping.beta, pattern);
     for (std::size_t i = 0; i < side.faces.size(); ++i) faces.add(side, side.faces[i], sections[i]);
-    builder.add_feed("free field of " + absorbing.text("group"), std::move(pattern), field->functions(), field);
+    builder.add_feed("free field of " + absorbing.group.name, std::move(pattern), field->functions(), field);
   }
 }
 

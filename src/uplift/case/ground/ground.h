@@ -12,12 +12,12 @@ void add_ties(const CaseInput& input, ModelBuilder& builder, const CaseNames& na
 
 /// Free-field columns beside the absorbing faces that ask for them (`free_field`), marched through the dynamic stages, and what they put
 /// on these faces. Throws InputError for faces that are not in horizontal rows, without an incident wave below, or with modal damping.
-void add_free_field(const Values& root, const std::vector<Stage>& stages, const BulkDamping& damping,
+void add_free_field(const CaseInput& input, const std::vector<Stage>& stages, const BulkDamping& damping,
                     const std::shared_ptr<const LinearSolver>& solver, ModelBuilder& builder, const CaseNames& names);
 
 /// Particle motion of an incident wave [1]; InputError for what a plane model does not have.
-Vec3 incident_motion(const Values& incident, Space space);
+Vec3 incident_motion(const CaseIncident& incident, Space space);
 /// Velocity of the incoming wave alone [m/s].
-std::shared_ptr<const TimeFunction> incident_velocity(const Values& incident, const CaseNames& names);
+std::shared_ptr<const TimeFunction> incident_velocity(const CaseIncident& incident, const CaseNames& names);
 
 }  // namespace uplift

@@ -20,8 +20,8 @@ void BeamCells::check_use(const Values& beam, CellId cell) const {
       for (const std::string& group : {surface->group ? surface->group->name : surface->lower_group->name,
                                        surface->group ? surface->group->name + "_upper" : surface->upper_group->name})
         refuse_in(group, "where the interface " + in_quotes(interface.name.name) + " opens");
-  for (const Values& face : read_.values.tables("absorbing"))
-    refuse_in(face.text("group"), "which is absorbing too (" + in_quotes(face.text("group")) + ")");
+  for (const CaseAbsorbing& face : read_.input->absorbing)
+    refuse_in(face.group.name, "which is absorbing too (" + in_quotes(face.group.name) + ")");
 }
 
 void BeamCells::claim(const Values& beam, const Stretch& stretch) {

@@ -23,6 +23,7 @@ int dimension_of_nodes(const Values& root) {
 CaseInput input_of_mesh(const Values& root) {
   CaseInput made;
   if (const Values* mesh = table_if(root, "mesh")) made.mesh = case_mesh_source(*mesh);
+  made.absorbing = all(root, "absorbing", case_absorbing);
   made.ties = all(root, "tie", case_tie);
   made.interfaces = all(root, "interface", case_interface);
   made.foundations = all(root, "foundation", case_foundation);

@@ -12,6 +12,7 @@ struct Mesh;
 /// The checked case file as structs, tables in the order of the file. They point into the values that they were read from.
 struct CaseInput {
   std::optional<CaseMeshSource> mesh;
+  std::vector<CaseAbsorbing> absorbing;
   std::vector<CaseTie> ties;
   std::vector<CaseInterface> interfaces;
   std::vector<CaseFoundation> foundations;

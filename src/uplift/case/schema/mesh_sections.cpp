@@ -127,6 +127,25 @@ CaseMeshSource case_mesh_source(const Values& table) {
       {&table}, name_if(table, "file"), text_or(table, "name", ""), box != nullptr ? std::optional(soil_box_of(*box)) : std::nullopt, box};
 }
 
+CaseAbsorbing case_absorbing(const Values& table) {
+  CaseAbsorbing made{{&table}, name_used(table, "group"), table.flag("free_field"), {}};
+  if (const Values* incident = table_if(table, "incident")) {
+    const std::string& wave = incident->text("wave");
+    // The surface of free rock moves twice as much as the wave that comes up.
+    const double incoming = incident->text("kind") == "outcrop" ? 0.5 : 1;
+    made.incident = {{incident},
+                     incident->text("name"),
+                     wave == "P"    ? Wave::p
+                     : wave == "SV" ? Wave::sv
+                                    : Wave::sh,
+                     wave,
+                     incident->number("azimuth"),
+                     incoming * incident->number("velocity"),
+                     name_used(*incident, "function")};
+  }
+  return made;
+}
+
 const Section& tie_section() {
   static const Section s{
       "tie",

@@ -2,6 +2,7 @@
 #include <array>
 
 #include "uplift/case/schema/case_table.h"
+#include "uplift/elements/absorbing.h"
 #include "uplift/elements/element_entry.h"
 #include "uplift/mesh/soil_box.h"
 
@@ -25,6 +26,23 @@ struct CaseMeshSource : CaseTable {
   const Values* box_table;
 };
 CaseMeshSource case_mesh_source(const Values&);
+
+/// A wave that comes in through a face.
+struct CaseIncident : CaseTable {
+  std::string name;
+  Wave wave;
+  std::string wave_word;
+  double azimuth;   // rad
+  double velocity;  // m/s of the incoming wave alone, that the function multiplies
+  NameUsed function;
+};
+/// [[absorbing]], which elements/absorbing_entry.cpp declares.
+struct CaseAbsorbing : CaseTable {
+  NameUsed group;
+  bool free_field;
+  std::optional<CaseIncident> incident;
+};
+CaseAbsorbing case_absorbing(const Values&);
 
 const Section& tie_section();
 struct CaseTie : CaseTable {
