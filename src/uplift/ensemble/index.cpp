@@ -27,7 +27,7 @@ constexpr const char* tables =
     "CREATE TABLE number(run TEXT, quantity TEXT, of TEXT, value REAL);"
     "CREATE TABLE spectrum(run TEXT, floor TEXT, damping REAL, frequency REAL, psa REAL);";
 
-using Cell = std::variant<double, long, std::string>;
+using CellValue = std::variant<double, long, std::string>;
 
 /// A data base that is being written. Every failure is an OutputError.
 class Writer {
@@ -56,9 +56,9 @@ class Writer {
     Insert(const Insert&) = delete;
     Insert& operator=(const Insert&) = delete;
     ~Insert() { sqlite3_finalize(statement_); }
-    void row(const std::vector<Cell>& cells) {
+    void row(const std::vector<CellValue>& cells) {
       int place = 0;
-      for (const Cell& cell : cells) {
+      for (const CellValue& cell : cells) {
         ++place;
         if (const auto* number = std::get_if<double>(&cell))
           sqlite3_bind_double(statement_, place, *number);

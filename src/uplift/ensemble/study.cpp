@@ -4,6 +4,7 @@
 
 #include "uplift/base/file.h"
 #include "uplift/base/text.h"
+#include "uplift/case/schema/case_input.h"
 #include "uplift/io/files.h"
 #include "uplift/io/mesh/file.h"
 #include "uplift/io/text/toml.h"
@@ -60,7 +61,7 @@ Study open_study(const std::string& given) {
 }
 
 std::string Study::reduced_statement() const {
-  return reduced ? reduced->statement(of.read.values.text("reduced_model")) : "";
+  return reduced ? reduced->statement(*of.read.input->reduced_model) : "";
 }
 
 }  // namespace uplift

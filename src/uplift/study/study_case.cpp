@@ -12,6 +12,7 @@
 #include "uplift/base/text.h"
 #include "uplift/case/build/names.h"
 #include "uplift/case/decided.h"
+#include "uplift/case/schema/case_input.h"
 #include "uplift/case/schema/sections.h"
 #include "uplift/motion/spectrum.h"
 #include "uplift/statistics/latin_hypercube.h"
@@ -175,21 +176,18 @@ void check_samples(const StudyCase& study) {
 
 /// The numbers of limits are those of an interface, a foundation or a beam that the case has.
 void check_limits(const StudyCase& study) {
-  const Values& root = study.read.values;
-  const auto names = [](const std::vector<Values>& tables, const char* key, std::vector<std::string>& all) {
-    for (const Values& table : tables) all.push_back(table.text(key));
-  };
+  const CaseInput& input = *study.read.input;
   for (std::size_t k = 0; k < study.plan.limits.size(); ++k) {
     const StudyLimit& limit = study.plan.limits[k];
     if (limit.quantity == nullptr || (limit.of.empty() && !limit.quantity->of_beam)) continue;
     const Values& table = study.plan.values.tables("limit")[k];
     std::vector<std::string> known;
     if (limit.quantity->of_beam) {
-      names(root.table("output").tables("beam_envelope"), "beam", known);
+      for (const CaseEnvelope& envelope : input.output.envelopes) known.push_back(envelope.beam.name);
       if (known.empty()) fail(table, "quantity", "a case with [[output.beam_envelope]], which gives this number", "none");
     } else {
-      names(root.tables("interface"), "name", known);
-      names(root.tables("foundation"), "name", known);
+      for (const CaseInterface& interface : input.interfaces) known.push_back(interface.name.name);
+      for (const CaseFoundation& foundation : input.foundations) known.push_back(foundation.name.name);
     }
     if (!limit.of.empty() && std::ranges::find(known, limit.of) == known.end())
       fail(table, "of", listed(known), in_quotes(limit.of), nearest_name(limit.of, known));
@@ -230,16 +228,15 @@ StudyCase study_case(const StudyPlan& plan, const Raw& case_raw, const MeshReade
     study.raw = generated.from_files(study.raw);
   }
   study.read = check_case(study.raw, plan.case_file, read_mesh);
-  const Values& root = study.read.values;
   resolve_variables(study);
   study.samples = samples_of(study, identity_of_case(raw, study.read));
   check_samples(study);
   check_limits(study);
-  const Values* compare = root.has("compare") ? &root.table("compare") : nullptr;
   Names names("motion");
-  if (compare)
-    for (const Values& motion : compare->tables("motion")) {
-      names.add(motion, "name");
+  if (const std::optional<CaseComparison>& compare = study.read.input->compare)
+    for (const CaseNamed& each : compare->motions) {
+      const Values& motion = *each.table;
+      names.add(each.name);
       if (motion.texts("replace").empty()) fail(motion, "replace", "one name at least", "none");
       check_motion(study.read, motion);
       study.motions.push_back(motion_of(study, &motion));
@@ -260,8 +257,8 @@ RunSpec run_of_study(const StudyCase& study, const Case& sample, std::size_t mot
   spec.pictures = false;
   spec.motion_factor = factor;
   if (const Values* table = study.motions[motion].table) {
-    const std::vector<Values>& motions = sample.values.table("compare").tables("motion");
-    spec.motion = &*std::ranges::find(motions, table->text("name"), [](const Values& each) { return each.text("name"); });
+    const std::vector<CaseNamed>& motions = sample.input->compare->motions;
+    spec.motion = std::ranges::find(motions, table->text("name"), [](const CaseNamed& each) { return each.name.name; })->table;
   }
   return spec;
 }

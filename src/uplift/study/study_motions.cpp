@@ -126,8 +126,8 @@ std::vector<CaseEdit> absolute_files(const Case& read) {
   for (std::size_t i = 0; i < records.size(); ++i)  // those of the plan have a path there
     if (records[i].has("file")) edits.push_back({fmt::format("record[{}].file", i), absolute_beside(records[i], "file")});
   for (const CaseFunction& function : read.input->functions) add(*function.shape, "file");
-  if (root.has("mesh")) add(root.table("mesh"), "file");
-  if (root.has("reduced_model")) edits.push_back({"reduced_model", absolute_beside(root, "reduced_model")});
+  if (read.input->mesh) add(*read.input->mesh->table, "file");
+  if (read.input->reduced_model) edits.push_back({"reduced_model", absolute_beside(root, "reduced_model")});
   return edits;
 }
 

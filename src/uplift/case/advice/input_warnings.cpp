@@ -50,9 +50,8 @@ void warn_gravity(const std::optional<CaseGravity>& gravity, std::vector<std::st
                    fmt::format("the weight acts with {:g} m/s2, on Earth it is 9.81 m/s2; is the unit right (981 cm/s2)?", size));
 }
 
-void warn_damping(const Values& root, std::vector<std::string>& said) {
+void warn_damping(const Values* damping, std::vector<std::string>& said) {
   constexpr double most = 0.5;
-  const Values* damping = table_if(root, "damping");
   if (damping == nullptr) return;
   const auto say = [&](const Values& table, const char* key, double ratio) {
     said.push_back(place_of(table, key) +
@@ -119,7 +118,7 @@ void warn_input(const Case& read, const RunSpec& spec, const BuiltCase& built, s
   warn_friction(built, said);
   warn_cone(read.values, built.model.space, said);
   warn_gravity(read.input->gravity, said);
-  warn_damping(read.values, said);
+  warn_damping(read.input->damping, said);
   warn_size(built, said);
   warn_jumps(read, spec, built, said);
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "uplift/case/schema/case_input.h"
 #include "uplift/io/results/result_writer.h"
 #include "uplift/io/results/study_site.h"
 
@@ -344,7 +345,7 @@ void write_study(ResultWriter& out, const StudyDocument& study) {
 
 StudyDocument study_document(const StudyCase& study, const std::vector<StudyCurve>& curves) {
   StudyDocument made;
-  made.case_title = study.read.values.text("title");
+  made.case_title = study.read.input->title;
   made.plan = study.plan;
   made.motions = study.motions;
   made.samples = study.samples;
