@@ -1,12 +1,19 @@
 #!/usr/bin/env python3
 """A file may include only its own layer and layers to its left; Eigen is named in src/uplift/math only; nobody prints or exits but the command line.
-Sections and equations of docs/theory that sources and tests cite exist."""
+The tables of a case are read in case/schema alone: others use Case::input. Sections and equations of docs/theory that sources and tests cite
+exist."""
 import pathlib
 import re
 import sys
 
 ORDER = "base math statistics mesh laws elements interface model linear contact dynamics reduction motion run case verdict study io session capi ensemble cli distributed".split()
 ROOT = pathlib.Path(__file__).resolve().parent.parent / "src" / "uplift"
+
+# Who takes a case from Case::input, and where tables are still asked for by their name: declared in the same file, or of elements and records.
+TAKES_INPUT = ("case/", "verdict/", "study/trust", "io/", "session/", "capi/", "ensemble/")
+READS_TABLES = ("case/schema/", "case/build/criteria.cpp", "case/build/records.cpp", "case/build/model.cpp", "case/read.cpp", "case/mesh/mesh.cpp",
+                "case/advice/warnings.cpp", "case/advice/input_warnings.cpp")
+READ_BY_NAME = re.compile(r"(\b(values|root|root_)(\.|->)(number|integer|flag|text|texts|numbers|table|tables|part|has|given)\(|table_if\([\w.>-]*(values|root),\s*)\"")
 
 theory = (ROOT.parent.parent / "docs" / "theory" / "README.md").read_text()
 sections = set(re.findall(r"^## (\d+)\.", theory, re.M))
@@ -46,6 +53,9 @@ for path in sorted(ROOT.rglob("*")):
             mistakes.append(f"{place}: layer {layer} includes {include.group(1)}, which is to its right")
         if re.match(r"\s*#include <(Eigen|unsupported/Eigen)", line) and layer != "math":
             mistakes.append(f"{place}: Eigen is included outside math")
+        inside = str(path.relative_to(ROOT))
+        if inside.startswith(TAKES_INPUT) and not inside.startswith(READS_TABLES) and READ_BY_NAME.search(line):
+            mistakes.append(f"{place}: a table of the case is read by its name; Case::input has its members (case/schema)")
         if layer not in ("cli",) and re.search(r"std::(cout|cerr|exit|abort)\b|\bprintf\(|fmt::print\(", line):
             mistakes.append(f"{place}: the library prints or exits")
         following = lines[number] if number < len(lines) else ""

@@ -9,7 +9,8 @@ namespace uplift {
 
 struct Mesh;
 
-/// The checked case file as structs, tables in the order of the file. They point into the values that they were read from.
+/// The checked case file as structs, tables in the order of the file. They point to tables of the values that they were read from,
+/// never to the values themselves, which move with the case.
 struct CaseInput {
   std::optional<CaseMeshSource> mesh;
   std::vector<CaseAbsorbing> absorbing;
