@@ -95,7 +95,7 @@ def macro_element(
         w_ref: plastic settlement that brings half of V_u - V_s [m], > 0 m.
         friction_angle: friction between footing and ground; absent: no sliding [rad], from 0 to 1.4 rad.
         cohesion: shear strength without pressure; absent: 0 [Pa], >= 0 Pa.
-        dilatancy: angle at which a sliding footing rises; settling flow [rad], from 0 to 1.4 rad; default 0.0.
+        dilatancy: angle at which a sliding footing rises; settling flow; absent: 0 [rad], from 0 to 1.4 rad.
         flow: where yielding ground goes: settling: always down, as in tests; associated: along the normal of the
             surface, for comparison (a footing with a safety above 2 rises with every cycle); one of "settling",
             "associated"; default settling.

@@ -66,7 +66,8 @@ def lagrange(
     """Constraints by Lagrange multipliers: exact, redundant points share the force with least norm.
 
     Parameters:
-        gap_tolerance: a point is closed only when it would penetrate by more than this [m], > 0 m; default 1e-12.
+        gap_tolerance: a point is closed only when it would penetrate by more than this; absent: 1e-12 of the size
+            of the interfaces [m], > 0 m.
         tolerance: balance residual beside traction laws, relative to the interface force, > 0; default 1e-12.
         most_iterations: iterations before the fallback, from 1 to 10000; default 100.
     """

@@ -58,6 +58,15 @@ class Cases(unittest.TestCase):
             case.document  # from now on the text is written by the package
             self.assertEqual(case.resolved(), resolved, example.name)
 
+    def test_a_resolved_case_can_be_built(self):
+        for file in sorted((ROOT / "examples").glob("0*/**/*.toml")):
+            if "[[stage]]" not in file.read_text():
+                continue
+            resolved = up.load(file).resolved()
+            again = up.parse(resolved, str(file))
+            self.assertEqual(again.resolved(), resolved, str(file))
+            again.check()
+
     def test_what_is_refused_has_its_place(self):
         case = pier(soil())
         case.document["beam"][0]["E"] = "30 GPaa"

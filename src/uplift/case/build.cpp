@@ -16,6 +16,7 @@
 #include "uplift/case/schema/sections.h"
 #include "uplift/case/shown.h"
 #include "uplift/linear/large.h"
+#include "uplift/model/base_size.h"
 #include "uplift/model/check.h"
 #include "uplift/model/model_matrices.h"
 #include "uplift/model/tuned_mass.h"
@@ -225,30 +226,6 @@ void adapt_laws(const Case& read, const RunSpec& spec, BuiltCase& built) {
     built.behaviours[k] = derived.get();
     built.derived.push_back(std::move(derived));
   }
-}
-
-/// m: the largest distance from the place that is farthest from the mean; the same when all places are turned.
-double extent(const std::vector<Place>& places) {
-  Vec3 from = Vec3::Zero();
-  for (const Vec3& place : places) from += place / static_cast<double>(places.size());
-  double most = 0;
-  for (int sweep = 0; sweep < 2; ++sweep) {
-    const Vec3* farthest = nullptr;
-    most = 0;
-    for (const Vec3& place : places)
-      if (const double distance = (place - from).norm(); distance > most) most = distance, farthest = &place;
-    if (farthest != nullptr) from = *farthest;
-  }
-  return most;
-}
-
-/// m: the largest distance between points of the interfaces; of nodes, where there is one point.
-double base_size(const Model& model) {
-  std::vector<Place> points, nodes;
-  for (const Interface& interface : model.interfaces) points.insert(points.end(), interface.position.begin(), interface.position.end());
-  for (const Node& node : model.nodes) nodes.push_back(node.position);
-  const double base = extent(points);
-  return base > 0 ? base : extent(nodes);
 }
 
 /// A base of width B that turns by the limit theta opens by B theta at its toe: as far, everywhere, the displacement is no smaller beside

@@ -55,6 +55,9 @@ class ModelVersion {
   std::shared_ptr<const char> token_;
 };
 
+/// Opening of a closed point as far as contact is solved, relative to the size of the interfaces.
+inline constexpr double no_gap = 1e-12;
+
 /// Shared by all steps of one size and constant once a method has seen it: another factor is another model.
 struct ContactModel {
   std::vector<Block> blocks;
@@ -65,6 +68,7 @@ struct ContactModel {
   InterfaceSolver solver = InterfaceSolver::automatic;
   double scale = 1;  // weight of the interface force in the scheme's balance: with the path average 2/(1 + 2 b), else 1
   double step = 0;   // s; 0 in statics
+  double size = 1;   // m: of the interfaces, base_size(); what is no gap is a share of it
   ModelVersion version;
   int rows() const { return static_cast<int>(factor.rows()); }
 };

@@ -189,6 +189,8 @@ class Reader {
     }
     if (json_.contains("scale")) model.scale = number(json_["scale"], "scale");
     if (json_.contains("step")) model.step = number(json_["step"], "step");
+    if (json_.contains("size")) model.size = number(json_["size"], "size");
+    if (model.size < 0) refuse("size", "a length of at least 0", json_["size"].dump());
     const Json& factor = at(json_, "", "factor");
     if (!factor.is_array() || factor.size() != rows)
       refuse("factor", "a list of " + std::to_string(rows) + " rows", factor.is_array() ? std::to_string(factor.size()) : factor.dump());
@@ -215,20 +217,10 @@ class Reader {
 
  private:
   void check_keys() const {
-    static const std::vector<std::string> known{"format",
-                                                "reason",
-                                                "average",
-                                                "scale",
-                                                "step",
-                                                "factor",
-                                                "shift",
-                                                "free_opening",
-                                                "from",
-                                                "old",
-                                                "blocks",
-                                                "filter_gain",
-                                                "filter_coefficient",
-                                                "filter_lag"};
+    static const std::vector<std::string> known{
+        "format",    "reason",       "average", "scale", "step",   "size",        "factor",
+        "shift",     "free_opening", "from",    "old",   "blocks", "filter_gain", "filter_coefficient",
+        "filter_lag"};
     for (const auto& [key, value] : json_.items())
       if (std::find(known.begin(), known.end(), key) == known.end())
         throw InputError({file_, 0}, key, "a key of an interface problem", "\"" + key + "\"", nearest_name(key, known));
@@ -247,6 +239,7 @@ std::string save_problem(const InterfaceProblem& problem, const std::vector<cons
   json["average"] = problem.model->average;
   json["scale"] = to_json(problem.model->scale);
   json["step"] = to_json(problem.model->step);
+  json["size"] = to_json(problem.model->size);
   json["blocks"] = Json::array();
   std::vector<double> old;
   for (std::size_t b = 0; b < problem.model->blocks.size(); ++b) {

@@ -1,8 +1,10 @@
 #include "uplift/dynamics/closed_joint.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
+#include "uplift/model/base_size.h"
 #include "uplift/model/element_sum.h"
 #include "uplift/model/reduced.h"
 
@@ -25,6 +27,19 @@ Vector resisting_diagonal(const Model& model, const Sparse& stiffness_matrix, co
   return diagonal;
 }
 
+/// N/m, of constraints under rigid bodies: the largest load moves them by 1e-4 of the size of the interfaces.
+double stiffness_under_rigid_bodies(const Model& model) {
+  double largest = 0;
+  for (const Vector& pattern : model.assembly.loads) {
+    double sum = 0;
+    for (Index i = 0; i < pattern.size(); ++i)
+      if (!model.space.is_rotation(model.space.index_of(static_cast<int>(i)))) sum += std::abs(pattern[i]);
+    largest = std::max(largest, sum);
+  }
+  const double stiffness = 1e4 * largest / base_size(model);
+  return stiffness > 0 && std::isfinite(stiffness) ? stiffness : 1;  // without a load nothing moves
+}
+
 }  // namespace
 
 Vector stiffness_of_parts(const Model& model, const Sparse& stiffness_matrix, const Sparse& b) {
@@ -42,7 +57,8 @@ Vector closed_joint(const Model& model, const Sparse& stiffness_matrix, const Sp
   Vector result = Vector::Zero(rows);
   double largest = 0;
   for (int i = 0; i < model.free(); ++i) largest = std::max(largest, stiffness_matrix.coeff(i, i));
-  if (largest <= 0) largest = 1e9;
+  const bool rigid = !(largest > 0);
+  if (rigid) largest = stiffness_under_rigid_bodies(model);
   // A joint far stiffer than the structure would leave nothing of the structure's stiffness in the factored sum once it is taken back.
   constexpr double stiffest = 1e6, beside_parts = 1e3;
   const Vector parts = stiffness_of_parts(model, stiffness_matrix, b);
@@ -57,7 +73,7 @@ Vector closed_joint(const Model& model, const Sparse& stiffness_matrix, const Sp
         const int row = first + c * n + p;
         double& value = result[row];
         if (behaviours.interfaces[i].law != nullptr)
-          value = std::min(stiffness[c] * interface.weight[p], stiffest * largest);
+          value = rigid ? stiffness[c] * interface.weight[p] : std::min(stiffness[c] * interface.weight[p], stiffest * largest);
         else if (c == components - 1 || behaviours.interfaces[i].cone->friction() > 0)
           value = std::min(largest / n, beside_parts * parts[row]);
       }

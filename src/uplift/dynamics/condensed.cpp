@@ -5,6 +5,7 @@
 
 #include "uplift/math/dense.h"
 #include "uplift/math/small.h"
+#include "uplift/model/base_size.h"
 
 namespace uplift {
 
@@ -27,6 +28,7 @@ Behaviours::Behaviours(const Model& model, const ContactMethod& method, const Co
 ContactModel blocks_of(const Model& model, const Behaviours& behaviours) {
   ContactModel contact;
   contact.solver = behaviours.solver;
+  if (const double size = base_size(model); size > 0) contact.size = size;
   int first = 0;
   for (std::size_t i = 0; i < model.interfaces.size(); ++i) {
     const Interface& interface = model.interfaces[i];

@@ -241,7 +241,7 @@ class Monolithic final : public StepSolver {
       const int normal = block.first + block.batch.normal() + i;
       const double pressure = -solution_.force[normal], friction = block.cone->friction();
       if (contact == Contact::open) {
-        if (solution_.opening[normal] < -1e-12) contact = Contact::stick;
+        if (solution_.opening[normal] < -no_gap * problem_.model->size) contact = Contact::stick;
       } else if (pressure < -1e-12 * largest) {
         contact = Contact::open;
       } else if (friction > 0 && block.batch.components > 1) {
@@ -255,6 +255,7 @@ class Monolithic final : public StepSolver {
   double update_friction(const Block& block, int i, std::size_t point, double bound) {
     Slip& slip = slip_[point];
     const Vec2 moved = slip_of(block, i);
+    const double still = 0.01 * no_gap * problem_.model->size;  // m
     if (contact_[point] == Contact::stick) {
       Vec2 force = Vec2::Zero();
       for (int c = 0; c < block.batch.components - 1; ++c) force[c] = solution_.force[block.first + c * block.batch.points + i];
@@ -263,11 +264,11 @@ class Monolithic final : public StepSolver {
       slip = {force.normalized(), 0};
       return 1;
     }
-    if (moved.dot(slip.direction) < -1e-14) {
+    if (moved.dot(slip.direction) < -still) {
       contact_[point] = Contact::stick;
       return 1;
     }
-    if (block.batch.components == 2 || moved.norm() < 1e-14) return 0;
+    if (block.batch.components == 2 || moved.norm() < still) return 0;
     const Vec2 direction = moved.normalized();
     const double turned = (direction - slip.direction).norm() * bound;
     slip = {direction, bound / moved.norm()};

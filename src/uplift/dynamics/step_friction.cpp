@@ -9,7 +9,7 @@
 namespace uplift {
 namespace {
 
-constexpr double still = 1e-12;  // m, as far as contact is solved
+constexpr double still = 1e-3;  // of what is no gap: as far as contact is solved
 
 /// Whether a point with friction that bears no pressure before or after a step is `wanted`(row of its opening, at the end).
 template <class Wanted>
@@ -30,8 +30,8 @@ bool lifted(const std::vector<Block>& blocks, const State& before, const Vector&
                               [&](int row, bool at_end) { return (at_end ? opening : before.opening)[row] > closed_gap; });
 }
 
-bool moves(const Vector& one, const Vector& other) {
-  return (one - other).cwiseAbs().maxCoeff() > still;
+bool moves(const Vector& one, const Vector& other, double closed_gap) {
+  return (one - other).cwiseAbs().maxCoeff() > still * closed_gap;
 }
 
 }  // namespace
@@ -51,7 +51,8 @@ void Stepper::prepare_friction(const std::vector<Block>& blocks) {
 bool Stepper::drop_creating() {
   if (!options_.scheme.average_acceleration()) return false;
   const InterfaceSolution& end = *solution_;
-  if (!friction_.reduced && !(moves(now_.opening, end.opening) && lifted(last_->model->blocks, now_, end.force, end.opening, closed_gap_)))
+  if (!friction_.reduced &&
+      !(moves(now_.opening, end.opening, closed_gap_) && lifted(last_->model->blocks, now_, end.force, end.opening, closed_gap_)))
     return false;
   const double nothing = 1e-15 * largest_external_;
   Vector& dropped = friction_.dropped;
@@ -64,7 +65,8 @@ bool Stepper::drop_creating() {
       double begun = 0, ended = 0;
       const int rows = held ? block.batch.components - 1 : block.batch.components;
       for (int c = 0, row = i; c < rows; ++c, row += n) {
-        const double moved = end.opening[row] - now_.opening[row];
+        const double change = end.opening[row] - now_.opening[row];
+        const double moved = std::abs(change) > still * closed_gap_ ? change : 0;  // a point that stays does no work by its round-off
         begun += 0.5 * now_.force[row] * moved, ended += 0.5 * end.force[row] * moved;
       }
       if (begun + ended >= -nothing || !(begun < 0)) continue;
@@ -99,12 +101,12 @@ bool Stepper::strikes(const Impact& data) {
   if (friction_.reduced) return true;
   if (!any_without_pressure(blocks, now_.force, contact_, [](int, bool) { return true; })) return false;
   const bool open = lifted(blocks, now_, contact_, next_.opening, closed_gap_);
-  if (open && moves(now_.opening, next_.opening)) return true;
+  if (open && moves(now_.opening, next_.opening, closed_gap_)) return true;
   const auto goes_on = [&](const Vector& motion, double weight) {
     row_rates(data, motion, 0, contact_.size(), friction_.rates);
-    if (open) return weight * friction_.rates.cwiseAbs().maxCoeff() > still;
+    if (open) return weight * friction_.rates.cwiseAbs().maxCoeff() > still * closed_gap_;
     return any_without_pressure(blocks, now_.force, contact_,
-                                [&](int row, bool) { return weight * std::abs(friction_.rates[row]) > still; });
+                                [&](int row, bool) { return weight * std::abs(friction_.rates[row]) > still * closed_gap_; });
   };
   return goes_on(next_.velocity, data.step) || goes_on(next_.acceleration, data.step * data.step);
 }

@@ -65,8 +65,8 @@ void refuse_shallow(const FootingOnSoil& footing, const Values& soil) {
 
 SoilFormulas formulas_of(const Values& soil, const Footprint& footprint) {
   if (footprint.shape == Footprint::Shape::rectangle)
-    return soil.text("formulas") == "gazetas" ? SoilFormulas::gazetas : SoilFormulas::pais_kausel;
-  if (soil.given("formulas")) fail(soil, "formulas", "formulas of a rectangle: a disc and a strip have their own", "a choice");
+    return soil.has("formulas") && soil.text("formulas") == "gazetas" ? SoilFormulas::gazetas : SoilFormulas::pais_kausel;
+  if (soil.has("formulas")) fail(soil, "formulas", "formulas of a rectangle: a disc and a strip have their own", "a choice");
   return footprint.shape == Footprint::Shape::disc ? SoilFormulas::disc : SoilFormulas::strip;
 }
 
@@ -96,7 +96,7 @@ const Section& footing_soil_section() {
     for (const Field& field : ground_fields()) made.fields.push_back(field);
     for (const Field& field :
          {tables("layers", ground_layer_section(), "layers from the surface down, instead of homogeneous ground"),
-          choice("formulas", {"pais_kausel", "gazetas"}, "of a rectangle").standard("pais_kausel"),
+          choice("formulas", {"pais_kausel", "gazetas"}, "of a rectangle; absent: pais_kausel").optional(),
           number("embedment", "m", "depth of the underside below the surface").nonnegative().standard(0.0),
           number("sidewall", "m", "formulas gazetas: height of the walls in contact with the ground; absent: embedment")
               .nonnegative()

@@ -117,11 +117,12 @@ MacroStrength strength_of(const Footprint& footprint, const Values& values) {
   if (values.has("cohesion") && !values.has("friction_angle")) fail(values, "cohesion", "friction_angle too (0 without friction)", "none");
   made.friction = values.has("friction_angle") ? std::tan(values.number("friction_angle")) : none;
   made.cohesion = values.has("cohesion") ? values.number("cohesion") * footprint.area() : 0;
-  if (values.given("dilatancy") && made.flow == MacroStrength::Flow::associated)
+  if (values.has("dilatancy") && made.flow == MacroStrength::Flow::associated)
     fail(values, "dilatancy", "settling flow: associated flow dilates by the angle of friction", "associated flow");
-  if (values.number("dilatancy") > (values.has("friction_angle") ? values.number("friction_angle") : 0))
+  const double dilatancy = values.has("dilatancy") ? values.number("dilatancy") : 0;
+  if (dilatancy > (values.has("friction_angle") ? values.number("friction_angle") : 0))
     fail(values, "dilatancy", "an angle up to friction_angle", values.has("friction_angle") ? "a larger one" : "no friction_angle");
-  made.dilation = std::tan(values.number("dilatancy"));
+  made.dilation = std::tan(dilatancy);
   made.settlement_share = values.number("settlement_factor");
   choose_surface(values, made);
   return made;
@@ -177,7 +178,7 @@ const FoundationEntry& entry_foundation_macro_element() {
           number("w_ref", "m", "plastic settlement that brings half of V_u - V_s").positive().optional(),
           number("friction_angle", "rad", "friction between footing and ground; absent: no sliding").between(0, 1.4).optional(),
           number("cohesion", "Pa", "shear strength without pressure; absent: 0").nonnegative().optional(),
-          number("dilatancy", "rad", "angle at which a sliding footing rises; settling flow").between(0, 1.4).standard(0.0),
+          number("dilatancy", "rad", "angle at which a sliding footing rises; settling flow; absent: 0").between(0, 1.4).optional(),
           choice(
               "flow", {"settling", "associated"},
               "where yielding ground goes: settling: always down, as in tests; associated: along the normal of the surface, for comparison "

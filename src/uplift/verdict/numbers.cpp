@@ -138,9 +138,13 @@ void add_residuals(const BaseOverTime& base, std::vector<VerdictNumber>& numbers
   const BasePose rest = steps.rest_poses.empty() ? BasePose() : steps.rest_poses[base.index];
   const auto left = [&](const char* name, double BasePose::*of) { return residual(tail, name, of, rest.*of); };
   const auto length = [&](const char* name, double BasePose::*one, double BasePose::*two) {
-    const VerdictNumber a = left(name, one), b = left(name, two);
+    const VerdictNumber a = left(name, one);
     if (base.interface.space.dimension == 2) return a;  // with its sign, which is that of the history
-    return VerdictNumber{a.quantity, std::hypot(a.value, b.value), {}, {}, std::hypot(*a.swing, *b.swing)};
+    const VerdictNumber b = left(name, two);
+    const double mean_1 = a.value + rest.*one, mean_2 = b.value + rest.*two;
+    double farthest = 0;
+    for (const BasePose& pose : tail) farthest = std::max(farthest, std::hypot(pose.*one - mean_1, pose.*two - mean_2));
+    return VerdictNumber{a.quantity, std::hypot(a.value, b.value), {}, {}, farthest};
   };
   numbers.push_back(length("residual_rotation", &BasePose::tilt_1, &BasePose::tilt_2));
   numbers.push_back(left("residual_settlement", &BasePose::settlement));

@@ -256,6 +256,30 @@ TEST(VerdictNumbersTest, SidesOfTurnedRafts) {
   }
 }
 
+/// A base that still goes round on an ellipse: how far it moves does not depend on the axes.
+TEST(VerdictNumbersTest, RemainingVariationOfAVector) {
+  const BuiltCase built = raft();
+  constexpr int instants = 400;
+  constexpr double longer = 3e-4, shorter = 1e-4;
+  for (const double turned : {0.0, 0.3, 0.9, M_PI / 4, 2.0}) {
+    RunResult run = run_of({view_of({.axial = -1})}, 0.1);
+    run.steps.rest_poses.assign(1, BasePose());
+    run.steps.tail.assign(1, {});
+    for (int i = 0; i < instants; ++i) {
+      const double phase = 2 * M_PI * i / instants, a = longer * std::cos(phase), b = shorter * std::sin(phase);
+      BasePose pose;
+      pose.tilt_1 = 5e-4 + std::cos(turned) * a - std::sin(turned) * b;
+      pose.tilt_2 = std::sin(turned) * a + std::cos(turned) * b;
+      run.steps.tail[0].push_back(pose);
+    }
+    const VerdictNumbers numbers = numbers_of(built, run, nullptr);
+    const VerdictNumber* rotation = find_number(numbers.interfaces.at(0).numbers, "residual_rotation");
+    ASSERT_NE(rotation, nullptr);
+    EXPECT_NEAR(rotation->value, 5e-4, 1e-12);
+    EXPECT_NEAR(rotation->swing.value_or(0), longer, 1e-12) << turned;
+  }
+}
+
 // ---- whole runs ----
 
 /// A block whose mass is at the level of its base.

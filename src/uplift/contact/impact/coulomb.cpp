@@ -12,6 +12,7 @@ CoulombRates::CoulombRates(const std::vector<Block>& blocks, const Matrix& facto
   auto model = std::make_shared<ContactModel>();
   std::ranges::copy_if(blocks, std::back_inserter(model->blocks), [](const Block& block) { return block.cone != nullptr; });
   model->factor = factor;
+  model->size = 0;  // rates: what is none is relative to the others
   problem_ = problem_of(std::move(model));
 }
 

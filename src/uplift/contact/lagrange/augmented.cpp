@@ -78,13 +78,12 @@ void read_status(const InterfaceProblem& problem, InterfaceSolution& solution) {
 /// nothing is done.
 void share_redundant(const InterfaceProblem& problem, double tolerance, AugmentedWork& work, InterfaceSolution& solution) {
   if (!may_be_redundant(*problem.model)) return;
-  constexpr double gap = 1e-12;  // m
   work.shared = solution;
   size_solution(problem, work.shared);
   if (work.shared.force.size() != solution.force.size() || solution.force.size() == 0) return;
   work.shared.force = solution.force, work.shared.opening = solution.opening, work.shared.now = solution.now;
   read_status(problem, work.shared);
-  work.shares.begin(problem, gap, work.shared);
+  work.shares.begin(problem, no_gap * problem.model->size, work.shared);
   work.shares.guess_from_solution();
   constexpr int most = 20;
   bool settled = false;

@@ -22,7 +22,7 @@ class Frictional final : public MethodWork {
   Outcome solve(const InterfaceProblem& problem, const LagrangeOptions& options, InterfaceSolution& solution) {
     problem_ = &problem, options_ = &options, solution_ = &solution;
     outcome_ = Outcome();
-    step_.begin(problem, options.gap_tolerance, solution);
+    step_.begin(problem, options.gap_of(*problem.model), solution);
     visited_.reserve(static_cast<std::size_t>(options.most_iterations) + 50 + 8 * step_.points().size());
     return find();
   }
@@ -56,7 +56,7 @@ class Frictional final : public MethodWork {
     step_.write_status();
     outcome_.residual = contact_residual(*problem_, *solution_, residual_);
     const double moved = problem_->rows() > 0 ? (solution_->opening - problem_->free_opening).cwiseAbs().maxCoeff() : 0;
-    return outcome_.residual <= 1e-8 + (moved > 0 ? 4 * options_->gap_tolerance / moved : 1);
+    return outcome_.residual <= 1e-8 + (moved > 0 ? 4 * options_->gap_of(*problem_->model) / moved : 1);
   }
 
   Outcome finish() {

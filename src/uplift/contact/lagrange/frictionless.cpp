@@ -110,7 +110,7 @@ class Frictionless final : public MethodWork {
     target_ = problem_->free_opening;
     target_.noalias() += problem_->model->factor * newton_;
     const Rows rows{problem_->rows(), factor_.cols(), problem_->rows(), factor_.data(),
-                    target_.data(),   limit_.data(),  nullptr,          options_->gap_tolerance};
+                    target_.data(),   limit_.data(),  nullptr,          options_->gap_of(*problem_->model)};
     const KernelReply reply = solve_rows(rows, held_.data(), x_.data(), opening_.data(), multiplier_.data(), kernel_);
     outcome_.cycles += reply.cycles;
     if (!reply.solved()) {

@@ -68,8 +68,8 @@ class LagrangeMethod final : public ContactMethod {
 #pragma omp simd
     for (std::ptrdiff_t i = 0; i < n; ++i) held[i] = status[i] != Status::open ? area[i] : 0.0;
     const Rows view{
-        n,       problem.model->factor.cols(), rows, problem.model->factor.data() + first, problem.free_opening.data() + first, area,
-        nullptr, options_.gap_tolerance};
+        n,       problem.model->factor.cols(),   rows, problem.model->factor.data() + first, problem.free_opening.data() + first, area,
+        nullptr, options_.gap_of(*problem.model)};
     const KernelReply reply =
         solve_rows(view, held, solution.z.data(), solution.opening.data() + first, solution.force.data() + first, work.kernel);
     if (reply.iterations > 1)
@@ -103,7 +103,7 @@ class LagrangeMethod final : public ContactMethod {
                     problem.free_opening.data(),
                     work.limit.data(),
                     nullptr,
-                    options_.gap_tolerance};
+                    options_.gap_of(*problem.model)};
     const KernelReply reply =
         solve_rows(view, work.held.data(), solution.z.data(), solution.opening.data(), solution.force.data(), work.kernel);
     point = 0;
@@ -174,12 +174,16 @@ const Entry<ContactMethod>& entry_method_lagrange() {
        .source = "Cherubini, Richard & Frau, eq 1 with alpha = 0; Hintermueller, Ito & Kunisch (2002); Goldfarb & Idnani (1983); Alart & "
                  "Curnier (1991)",
        .params =
-           {number("gap_tolerance", "m", "a point is closed only when it would penetrate by more than this").positive().standard(1e-12),
+           {number("gap_tolerance", "m",
+                   "a point is closed only when it would penetrate by more than this; absent: 1e-12 of the size of the interfaces")
+                .positive()
+                .optional(),
             number("tolerance", "1", "balance residual beside traction laws, relative to the interface force").positive().standard(1e-12),
             integer("most_iterations", "iterations before the fallback").between(1, 10000).standard(100.0)}},
       [](const Values& values) -> std::unique_ptr<const ContactMethod> {
         return std::make_unique<LagrangeMethod>(
-            LagrangeOptions{values.number("gap_tolerance"), values.number("tolerance"), values.integer("most_iterations")});
+            LagrangeOptions{values.has("gap_tolerance") ? std::optional(values.number("gap_tolerance")) : std::nullopt,
+                            values.number("tolerance"), values.integer("most_iterations")});
       }};
   return entry;
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,9 +13,11 @@
 namespace uplift {
 
 struct LagrangeOptions {
-  double gap_tolerance = 1e-12;  // m: a point is closed only below -gap_tolerance, and stays open when it just touches
-  double tolerance = 1e-12;      // balance residual, relative
+  std::optional<double> gap_tolerance;  // m: a point is closed only below minus this, and stays open when it just touches
+  double tolerance = 1e-12;             // balance residual, relative
   int most_iterations = 100;
+  /// m: gap_tolerance, or 1e-12 of the size of the interfaces.
+  double gap_of(const ContactModel& model) const { return gap_tolerance.value_or(no_gap * model.size); }
 };
 
 /// Frictionless cones with traction laws and the statics' shift beside them: minimises

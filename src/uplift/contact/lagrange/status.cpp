@@ -19,7 +19,7 @@ void StatusStep::begin(const InterfaceProblem& problem, double gap_tolerance, In
   problem_ = &problem, solution_ = &solution;
   gap_ = problem.rows() > 0 ? std::max(gap_tolerance, 1e-14 * problem.free_opening.cwiseAbs().maxCoeff()) : gap_tolerance;
   finite_ = true;
-  redundant_ = false;
+  shared_ = false;
   changed_.clear();
   slope_offsets(*problem.model, offsets_);
   slope_.setZero(offsets_.back());
@@ -95,9 +95,9 @@ std::array<double, 2> StatusStep::slip(const FrictionPoint& point) const {
 /// What the point would rather be, and in which direction it would slip.
 Status StatusStep::trial(const FrictionPoint& point, std::array<double, 2>& direction) const {
   const double normal = solution_->force[point.normal()], opening = solution_->opening[point.normal()], small = 1e-12 * largest_force_;
-  const bool touches = redundant_ && opening <= gap_ && field_[point.normal()] * point.area < -small;
+  const bool takes_share = shared_ && opening <= gap_ && field_[point.normal()] * point.area < -small;
   const bool closed = point.status != Status::open;
-  if (closed ? normal > small : opening >= -gap_ && !touches) return Status::open;
+  if (closed ? normal > small : opening >= -gap_ && !takes_share) return Status::open;
   if (!(point.friction > 0)) return Status::slip;
   const double bound = point.friction * (closed ? std::max(0.0, -normal) : std::max(0.0, -opening * point.rho_normal));
   std::array<double, 2> push = slip(point);

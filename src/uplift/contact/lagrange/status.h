@@ -81,6 +81,8 @@ class StatusStep {
   void list_held_rows();
   bool hold();
   void measure_excess();
+  bool touches() const;
+  void find_field();
   void open_at(const Vector& z);
   void write_forces();
   std::array<double, 2> slip(const FrictionPoint&) const;
@@ -94,7 +96,7 @@ class StatusStep {
   std::vector<int> offsets_;
   Vector slope_, linear_force_;  // law forces = linear_force_ + slope C z
   Vector field_;                 // C y, pressure that an open row would carry
-  bool redundant_ = false;       // the field counts: the held rows are not independent
+  bool shared_ = false;          // the field counts: an open point touches
   double largest_force_ = 0;
   bool finite_ = true;
   std::vector<std::ptrdiff_t> changed_;

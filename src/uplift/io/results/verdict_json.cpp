@@ -25,7 +25,9 @@ void write_number(ResultWriter& out, const VerdictNumber& number) {
   if (number.step_change) step_change = 100 * *number.step_change;
   if (number.change) change = 100 * *number.change;
   out.number("step_change_percent", step_change, "%", "change with twice the step, relative to the reference of the number");
-  out.number("swing", number.swing, unit, "half of the range in which a residual value still varies");
+  out.number(
+      "swing", number.swing, unit,
+      "half of the range in which a residual value still varies; in space, of rotation and slip, the largest distance from the mean");
   out.number("bonded", number.bonded, unit, "value of the bonded reference run");
   out.number("change_percent", change, "%", "change compared with the bonded reference run");
   out.when(number.bonded && !number.change).constant("change_note", not_excited, "why there is no change");
