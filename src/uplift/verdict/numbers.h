@@ -14,10 +14,10 @@ namespace uplift {
 struct VerdictNumber {
   const VerdictQuantity* quantity = nullptr;
   double value = 0;
-  std::optional<double> time = {};       // s, where it is reached
-  std::optional<double> bonded = {};     // the same number of the bonded reference run
-  std::optional<double> swing = {};      // half of the range in which a residual still moves; of a vector the largest distance from its mean
-  std::optional<double> change = {};     // relative to it: 0.1 is 10 % more; nothing where both are noise
+  std::optional<double> time = {};    // s, where it is reached
+  std::optional<double> bonded = {};  // the same number of the bonded reference run
+  std::optional<double> swing = {};   // half of the range in which a residual still moves; of a vector the largest distance from its mean
+  std::optional<double> change = {};  // relative to it: 0.1 is 10 % more; nothing where both are noise
   std::optional<double> step_peak = {};  // largest mean over one step, of numbers that are means over the window
   // With twice the step, and by how much that changes the number, relative to what check_step() compares it with
   std::optional<double> coarse = {}, step_change = {};
