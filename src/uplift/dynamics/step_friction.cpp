@@ -154,7 +154,7 @@ bool Stepper::impact_of_friction(const Level& level, const Impact& data) {
     for (int row = normal; row < normal + block.batch.points; ++row)
       if (next_.opening[row] <= closed_gap_) now.takes_part[row] = row_area_[row];
   }
-  if (!coulomb_->solve(now.rates, now.takes_part)) return false;
+  if (!coulomb_->solve(now.rates, now.takes_part, still * closed_gap_ / level.step)) return false;
   mass_spread_->add(1, coulomb_->z(), now.velocity);
   now.impulse = coulomb_->impulse();
 
@@ -168,7 +168,7 @@ bool Stepper::impact_of_friction(const Level& level, const Impact& data) {
   damp_impact(level, now.velocity, now.after);
   now.soon = now.velocity + time * now.after;
   row_rates(data, now.soon, 0, contact_.size(), now.rates);
-  if (!coulomb_->solve(now.rates, now.takes_part)) return false;
+  if (!coulomb_->solve(now.rates, now.takes_part, still * closed_gap_ / level.step)) return false;
   mass_spread_->add(1 / time, coulomb_->z(), now.after);
   next_.velocity = now.velocity, next_.acceleration = now.after;
   for (const Block& block : blocks) {

@@ -12,13 +12,12 @@ CoulombRates::CoulombRates(const std::vector<Block>& blocks, const Matrix& facto
   auto model = std::make_shared<ContactModel>();
   std::ranges::copy_if(blocks, std::back_inserter(model->blocks), [](const Block& block) { return block.cone != nullptr; });
   model->factor = factor;
-  model->size = 0;  // rates: what is none is relative to the others
   problem_ = problem_of(std::move(model));
 }
 
 CoulombRates::~CoulombRates() = default;
 
-bool CoulombRates::solve(const Vector& free, const Vector& takes_part) {
+bool CoulombRates::solve(const Vector& free, const Vector& takes_part, double at_rest) {
   constexpr double far = 1e3;  // times the largest rate: closes by no impulse of this size
   problem_.free_opening = free;
   const double open = far * free.cwiseAbs().maxCoeff();
@@ -32,7 +31,7 @@ bool CoulombRates::solve(const Vector& free, const Vector& takes_part) {
   solution_ = fresh_;
   solution_.opening = free;
   if (!(open > 0)) return true;
-  return solve_frictional(problem_, {}, work_, solution_).converged;
+  return solve_frictional(problem_, {.gap_tolerance = at_rest}, work_, solution_).converged;
 }
 
 }  // namespace uplift

@@ -15,9 +15,9 @@ class CoulombRates {
   /// Blocks of laws are left out. `factor` is C of the mass, rows x r.
   CoulombRates(const std::vector<Block>& blocks, const Matrix& factor);
   ~CoulombRates();
-  /// `free`: rates of all rows without contact [m/s]. `takes_part`: > 0 on the normal rows of the points that may press. False when no
-  /// solution was found.
-  bool solve(const Vector& free, const Vector& takes_part);
+  /// `free`: rates of all rows without contact [m/s]. `takes_part`: > 0 on the normal rows of the points that may press. `at_rest`: a
+  /// smaller rate is none [m/s]. False when no solution was found.
+  bool solve(const Vector& free, const Vector& takes_part, double at_rest);
   const Vector& impulse() const { return solution_.force; }  // rows [N s], tension > 0
   const Vector& rate() const { return solution_.opening; }   // rows [m/s]; of rows that take no part shifted
   const Vector& z() const { return solution_.z; }            // r

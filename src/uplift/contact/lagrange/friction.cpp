@@ -23,6 +23,7 @@ class Frictional final : public MethodWork {
     problem_ = &problem, options_ = &options, solution_ = &solution;
     outcome_ = Outcome();
     step_.begin(problem, options.gap_of(*problem.model), solution);
+    if (found_.force.size() != solution.force.size()) found_ = solution;  // its room
     visited_.reserve(static_cast<std::size_t>(options.most_iterations) + 50 + 8 * step_.points().size());
     return find();
   }
@@ -61,7 +62,23 @@ class Frictional final : public MethodWork {
 
   Outcome finish() {
     outcome_.converged = true;
+    share_force();
     return outcome_;
+  }
+
+  /// Which of the points that touch carry the force is not told by a solution of independent rows: the force of least norm is wanted, where
+  /// it moves nothing. With friction another distribution may slide elsewhere, and the solution that was found stays.
+  void share_force() {
+    constexpr int most = 20;
+    constexpr double same = 1e-9;
+    if (!step_.share_force()) return;
+    found_ = *solution_;
+    const Outcome before = outcome_;
+    if ((settle(most, false) || settle(most, true)) && confirmed()) {
+      const double moved = (found_.opening - problem_->free_opening).cwiseAbs().maxCoeff();
+      if ((found_.opening - solution_->opening).cwiseAbs().maxCoeff() <= same * moved) return;
+    }
+    *solution_ = found_, outcome_ = before;
   }
 
   /// Newton until status and forces stand still. `single`: one point changes at a time, least index first (Bland's rule). False when a
@@ -172,6 +189,7 @@ class Frictional final : public MethodWork {
   const InterfaceProblem* problem_ = nullptr;
   const LagrangeOptions* options_ = nullptr;
   InterfaceSolution* solution_ = nullptr;
+  InterfaceSolution found_;  // before its force is shared
   StatusStep step_;
   NewtonWork newton_;  // of the augmentation
   ResidualScratch residual_;

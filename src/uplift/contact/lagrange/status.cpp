@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uplift/contact/point_rows.h"
 #include "uplift/math/small.h"
 
 // The statuses: first guesses, trials, and what is read off. The linear problem of one status is in lagrange_status_solve.cpp.
@@ -19,7 +20,7 @@ void StatusStep::begin(const InterfaceProblem& problem, double gap_tolerance, In
   problem_ = &problem, solution_ = &solution;
   gap_ = problem.rows() > 0 ? std::max(gap_tolerance, 1e-14 * problem.free_opening.cwiseAbs().maxCoeff()) : gap_tolerance;
   finite_ = true;
-  shared_ = false;
+  redundant_ = false;
   changed_.clear();
   slope_offsets(*problem.model, offsets_);
   slope_.setZero(offsets_.back());
@@ -95,7 +96,7 @@ std::array<double, 2> StatusStep::slip(const FrictionPoint& point) const {
 /// What the point would rather be, and in which direction it would slip.
 Status StatusStep::trial(const FrictionPoint& point, std::array<double, 2>& direction) const {
   const double normal = solution_->force[point.normal()], opening = solution_->opening[point.normal()], small = 1e-12 * largest_force_;
-  const bool takes_share = shared_ && opening <= gap_ && field_[point.normal()] * point.area < -small;
+  const bool takes_share = redundant_ && opening <= gap_ && field_[point.normal()] * point.area < -small;
   const bool closed = point.status != Status::open;
   if (closed ? normal > small : opening >= -gap_ && !takes_share) return Status::open;
   if (!(point.friction > 0)) return Status::slip;
@@ -110,6 +111,17 @@ Status StatusStep::trial(const FrictionPoint& point, std::array<double, 2>& dire
   if (size > 0) direction = {push[0] / size, push[1] / size};
   if (point.status == Status::slip) return size < bound - point.rho_tangent * gap_ - small ? Status::stick : Status::slip;
   return size > bound + small ? Status::slip : Status::stick;
+}
+
+bool StatusStep::share_force() {
+  if (redundant_ || held_.empty() || PointRows::suits(*problem_->model)) return false;
+  const auto touches = [&](const FrictionPoint& point) {
+    return point.status == Status::open && solution_->opening[point.normal()] <= gap_;
+  };
+  if (std::ranges::none_of(points_, touches)) return false;
+  redundant_ = true;
+  find_field();
+  return update_status(false);
 }
 
 bool StatusStep::update_status(bool single) {

@@ -53,6 +53,9 @@ class StatusStep {
   bool solve();
   /// Looks at the trial of every point; true when a status changed. `single`: only the first that wants to.
   bool update_status(bool single);
+  /// After a solution whose held rows are independent: open points that touch take their share of the force of least norm. True when there
+  /// are any; solve() then tells whether they change the motion.
+  bool share_force();
   /// Balance with the true law forces (which it evaluates), and friction directions, relative.
   double residual();
   void write_status();
@@ -81,7 +84,6 @@ class StatusStep {
   void list_held_rows();
   bool hold();
   void measure_excess();
-  bool touches() const;
   void find_field();
   void open_at(const Vector& z);
   void write_forces();
@@ -96,7 +98,7 @@ class StatusStep {
   std::vector<int> offsets_;
   Vector slope_, linear_force_;  // law forces = linear_force_ + slope C z
   Vector field_;                 // C y, pressure that an open row would carry
-  bool shared_ = false;          // the field counts: an open point touches
+  bool redundant_ = false;       // the field counts: the held rows are not independent, or an open point touches beside them
   double largest_force_ = 0;
   bool finite_ = true;
   std::vector<std::ptrdiff_t> changed_;

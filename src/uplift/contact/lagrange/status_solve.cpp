@@ -145,7 +145,7 @@ bool StatusStep::solve() {
   linearise_laws();
   list_held();
   turn_slip();
-  shared_ = false;
+  redundant_ = false;
   if (solve_by_rows()) return true;
   if (!assemble()) return false;
   if (!held_.empty() && !hold()) return false;
@@ -154,8 +154,7 @@ bool StatusStep::solve() {
   solution_->z = z_;
   open_at(z_);
   write_forces();
-  shared_ = !held_.empty() && touches();
-  if (shared_) find_field();
+  if (redundant_) find_field();
   return true;
 }
 
@@ -265,15 +264,11 @@ bool StatusStep::hold() {
   product_.topLeftCorner(count, rank).noalias() = v_.leftCols(count).transpose() * basis;
   image_.compute(product_, count, rank, 0);
   image_.solve_transposed(resultant_, q_);
+  redundant_ = rank < count;
   return true;
 }
 
-/// Whether an open point touches: it may take a share of the force.
-bool StatusStep::touches() const {
-  return std::ranges::any_of(
-      points_, [&](const FrictionPoint& point) { return point.status == Status::open && solution_->opening[point.normal()] <= gap_; });
-}
-
+/// Dual of the force of least norm, q = V y on the held rows.
 void StatusStep::find_field() {
   const Index rank = range_.rank();
   image_.solve(q_, more_);
