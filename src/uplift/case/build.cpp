@@ -340,6 +340,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
   plan.every = read.input->output.every;
   plan.frames = frames_of(read, spec, built.model);
   add_requests(read, names, built);
+  add_combined(built);
   if (!spec.stiffness_ratio) add_floors(read, built);
   built.verdict_request = verdict_request(root, built);
   plan.window = built.verdict_request.window;

@@ -1,6 +1,7 @@
 #include "uplift/run/recorder.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -48,6 +49,18 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
     most_.push_back(std::abs(result_.peaks[most_.size()].value));
     (source.place != nullptr ? placed_ : source.vector != nullptr ? entries_ : made_).push_back(std::move(source));
   }
+  for (const CombinedRequest& request : plan.combined) {
+    std::vector<std::vector<Term>>& components = combined_.emplace_back();
+    for (const std::vector<CombinedRequest::Term>& terms : request.components) {
+      std::vector<Term>& sum = components.emplace_back();
+      for (const CombinedRequest::Term& term : terms) {
+        const int column = find_request(plan.requests, term.kind, term.of);
+        assert(column >= 0);
+        sum.push_back({recent_.data() + static_cast<std::size_t>(column) * apart, term.factor});
+      }
+    }
+  }
+  result_.combined.resize(plan.combined.size());
   if (stepper_ == nullptr) acceleration_ = Vector::Zero(model.free());
   before_ = state.time;
 }
@@ -258,6 +271,7 @@ void Recorder::flush() {
     const double* peak = std::find_if(recent, recent + count, [most](double value) { return std::abs(value) == most; });
     result_.peaks[k].value = *peak, result_.peaks[k].time = time_[static_cast<std::size_t>(peak - recent)];
   }
+  combine(count);
   std::array<std::size_t, many> rows;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count; ++i)
@@ -268,6 +282,25 @@ void Recorder::flush() {
   };
   append_rows(result_.table.front(), time_.data());
   for (std::size_t k = 0; k < most_.size(); ++k) append_rows(result_.table[k + 1], recent_.data() + k * apart);
+}
+
+void Recorder::combine(std::size_t count) {
+  constexpr double less = 1 - 1e-12;  // the exact length is only taken where it may be the largest
+  for (std::size_t k = 0; k < combined_.size(); ++k) {
+    CombinedPeak& peak = result_.combined[k];
+    for (std::size_t i = 0; i < count; ++i) {
+      std::array<double, 2> value{};
+      for (std::size_t c = 0; c < combined_[k].size(); ++c) {
+        for (const Term& term : combined_[k][c]) value[c] += term.factor * term.numbers[i];
+        peak.least[c] = peak.known ? std::min(peak.least[c], value[c]) : value[c];
+        peak.most[c] = peak.known ? std::max(peak.most[c], value[c]) : value[c];
+      }
+      peak.known = true;
+      if (!(value[0] * value[0] + value[1] * value[1] > less * peak.value * peak.value)) continue;
+      const double length = combined_[k].size() == 1 ? value[0] : std::hypot(value[0], value[1]);
+      if (std::abs(length) > std::abs(peak.value)) peak.value = length, peak.time = time_[i];
+    }
+  }
 }
 
 void Recorder::finish() {

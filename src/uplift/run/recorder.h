@@ -58,6 +58,8 @@ class Recorder {
   Vector displacement_at(double time, double load_factor, const Vector& coordinates) const;
   void complete_peak();
   void flush();
+  /// The combined motions of the first `count` of the last steps.
+  void combine(std::size_t count);
 
   const Model& model_;
   const RunPlan& plan_;
@@ -75,7 +77,13 @@ class Recorder {
   std::array<bool, many> is_row_;
   std::size_t count_ = 0;     // of them
   std::vector<double> most_;  // per column: size of its peak
-  double before_ = 0;         // s: accelerations are the mean from here to the present time
+  /// A column of a combined motion.
+  struct Term {
+    const double* numbers = nullptr;  // of the last steps
+    double factor = 0;
+  };
+  std::vector<std::vector<std::vector<Term>>> combined_;  // of every combined motion, the terms of its components
+  double before_ = 0;                                     // s: accelerations are the mean from here to the present time
   bool wants_acceleration_ = false;
   Vector acceleration_;
   Frame peak_frame_;        // at the largest uplift of this stage, when it is larger than in the frames of the earlier stages

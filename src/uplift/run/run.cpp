@@ -46,6 +46,15 @@ std::vector<std::size_t> stopping_stages(const RunPlan& plan) {
   return found;
 }
 
+int find_request(const std::vector<Request>& columns, Request::Kind kind, int unknown_or_interface) {
+  using enum Request::Kind;
+  const bool node = kind == displacement || kind == velocity || kind == acceleration || kind == absolute_acceleration;
+  const auto found = std::ranges::find_if(columns, [&](const Request& column) {
+    return column.kind == kind && column.below < 0 && (node ? column.unknown : column.interface) == unknown_or_interface;
+  });
+  return found == columns.end() ? -1 : static_cast<int>(found - columns.begin());
+}
+
 bool is_step_mean(Request::Kind kind) {
   using enum Request::Kind;
   switch (kind) {
@@ -238,9 +247,9 @@ bool Runner::resume() {
   if (from.stage >= plan_.stages.size() || plan_.stages[from.stage].type != Stage::Type::dynamics || from.step < 0 ||
       state.displacement.size() != model_.free() || state.opening.size() != b_.rows() || state.history.size() != laws_->history)
     return false;
-  if (from.step > 0 &&
-      (from.result.table.size() != plan_.requests.size() + 1 || from.result.floors.size() != plan_.floors.size() ||
-       from.result.envelopes.size() != plan_.envelopes.size() || from.result.steps.extremes.size() != model_.interfaces.size()))
+  if (from.step > 0 && (from.result.table.size() != plan_.requests.size() + 1 || from.result.combined.size() != plan_.combined.size() ||
+                        from.result.floors.size() != plan_.floors.size() || from.result.envelopes.size() != plan_.envelopes.size() ||
+                        from.result.steps.extremes.size() != model_.interfaces.size()))
     return false;
   run_ = from;
   run_.result.columns = plan_.requests;

@@ -96,6 +96,20 @@ struct Request {
   int interface = 0, point = 0, component = 0;  // `rotation` of an interface: slope of the opening's best plane [rad]
 };
 
+/// A motion made of several columns, whose largest length is kept, formed at every step.
+struct CombinedRequest {
+  struct Term {
+    Request::Kind kind = Request::Kind::displacement;
+    int of = 0;  // the full unknown of a displacement, else the interface
+    double factor = 1;
+  };
+  std::string name;
+  std::vector<std::vector<Term>> components;  // sums of columns, at right angles; one alone keeps its sign. At most two
+};
+
+/// The first column of this kind and this unknown (of a motion of a node, no drift) or interface; -1: there is none.
+int find_request(const std::vector<Request>& columns, Request::Kind kind, int unknown_or_interface);
+
 /// Whether a column of this kind is the mean over the step before its instant where RunResult::step_means; else it belongs to the instant.
 bool is_step_mean(Request::Kind kind);
 
@@ -120,6 +134,7 @@ struct RunPlan {
   InterfaceSolver interface_solver = InterfaceSolver::automatic;
   bool monolithic = false;  // the oracle: Newton on all unknowns
   std::vector<Request> requests;
+  std::vector<CombinedRequest> combined;
   std::vector<FloorRequest> floors;  // with these, all dynamic stages have the same step
   std::vector<double> floor_bands;   // Hz, ascending: what parts the bands in which floor spectra are compared
   std::vector<EnvelopeRequest> envelopes;
@@ -158,6 +173,13 @@ struct Peak {
   double time = 0;   // s
 };
 
+/// Of a CombinedRequest.
+struct CombinedPeak {
+  double value = 0, time = 0;             // the largest length, with the sign of a component alone; s
+  std::array<double, 2> least{}, most{};  // of every component
+  bool known = false;                     // something was recorded
+};
+
 struct Counts {
   long steps = 0, load_steps = 0, retries = 0, iterations = 0, cycles = 0;  // load_steps: of the static stages, those that converged
   long factorisations = 0, back_solves = 0;
@@ -193,6 +215,7 @@ struct RunResult {
   // the second one), load_steps[1 + k] column k. Empty without static stages.
   std::vector<std::vector<double>> load_steps;
   std::vector<Peak> peaks;              // one per column
+  std::vector<CombinedPeak> combined;   // one per motion of the plan that is made of several columns
   std::vector<FloorRecord> floors;      // one per floor of the plan
   std::vector<BeamEnvelope> envelopes;  // one per envelope of the plan
   Equilibrium equilibrium;              // of the whole model, at a few instants

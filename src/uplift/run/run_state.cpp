@@ -122,6 +122,11 @@ void list_parts(Archive& archive, T& peak) {
   archive(peak.name, peak.unit, peak.value, peak.time);
 }
 
+template <class Archive, SameAs<CombinedPeak> T>
+void list_parts(Archive& archive, T& peak) {
+  archive(peak.value, peak.time, peak.least[0], peak.least[1], peak.most[0], peak.most[1], peak.known);
+}
+
 template <class Archive, SameAs<FloorRecord> T>
 void list_parts(Archive& archive, T& record) {
   archive(record.step, record.acceleration);
@@ -206,7 +211,7 @@ void list_parts(Archive& archive, T& frame) {
 template <class Archive, SameAs<RunResult> T>
 void list_parts(Archive& archive, T& r) {
   archive(r.name, r.label, r.group, r.status, r.reason, r.expected_to_fail, r.counts, r.wall, r.step_seconds, r.end_time, r.table,
-          r.load_steps, r.peaks, r.floors, r.envelopes, r.equilibrium, r.steps, r.step_means);
+          r.load_steps, r.peaks, r.combined, r.floors, r.envelopes, r.equilibrium, r.steps, r.step_means);
   archive(r.max_uplifted_ratio, r.max_opening, r.max_base_moment, r.max_base_shear, r.max_pressure, r.max_step_pressure, r.time_uplifted,
           r.first_uplift, r.full_loss);
   archive(r.energy_created, r.energy_created_time, r.energy_lost, r.energy_lost_time, r.energy_scale, r.max_penetration, r.final_energy,
@@ -223,7 +228,7 @@ void list_parts(Archive& archive, T& run) {
 
 namespace {
 
-constexpr std::string_view magic = "uplift run state 2\n";
+constexpr std::string_view magic = "uplift run state 3\n";
 
 }  // namespace
 

@@ -127,6 +127,7 @@ void Runner::stand() {
   recorder.record(true);
   recorder.finish();
   run_.result.table = std::move(run_.load_steps.table);
+  run_.result.combined = std::move(run_.load_steps.combined);
   if (plan_.frames > 0) recorder.picture(run_.state);
 }
 

@@ -3,7 +3,7 @@
 
 #include "uplift/case/case.h"
 
-// How the top of a structure moves, from the recorded columns.
+// How the top of a structure moves, at every step.
 namespace uplift {
 
 /// Column of a result: by kind and by unknown or interface. Null when it was not recorded.

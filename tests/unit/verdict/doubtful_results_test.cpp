@@ -39,6 +39,8 @@ RunResult reaching(const BuiltCase& built, double moment, double drift, double o
   run.columns = {top};
   run.table = {{0, 0.5, 1}, {0, drift, 0}};
   run.peaks = {{"top.ux", "m", drift, 0.5}};
+  for (std::size_t k = 0; k < built.plan.combined.size(); ++k)
+    run.combined.push_back({.value = drift, .time = 0.5, .least = {std::min(drift, 0.0)}, .most = {std::max(drift, 0.0)}, .known = true});
   run.max_base_moment = {"", "N m", moment, 0.5};
   run.max_uplifted_ratio = {"", "1", open, 0.5};
   run.end_time = 1;

@@ -52,6 +52,7 @@ RunResult result_with(double moment, double ratio) {
                  request(Request::Kind::displacement, "top.ux", "m", 0)};
   run.table = {{0, 1}, {-1e6, -1e6}, {0, moment}, {0, 0.02}};
   run.peaks = {{"soil.axial", "N", -1e6, 0}, {"soil.moment", "N m", moment, 1}, {"top.ux", "m", 0.02, 1}};
+  run.combined = {{.value = 0.02, .time = 1, .least = {0}, .most = {0.02}, .known = true}};
   run.max_base_moment = {"", "N m", moment, 1};
   run.max_uplifted_ratio = {"", "1", ratio, 0.7};
   run.max_opening = {"", "m", ratio > 0 ? 0.013 : 0, 0.7};
@@ -65,6 +66,7 @@ BuiltCase footing() {
   BuiltCase built;
   built.model.nodes = {{"top", Vec2(0, 5)}};
   built.top = 0;
+  built.plan.combined = {{.name = "top", .components = {{}}}};
   InterfaceFacts& facts = built.facts.emplace_back();
   facts.name = "soil", facts.body = "base", facts.friction = 0.5, facts.area = 3;
   built.weight = 1e6;
@@ -218,7 +220,7 @@ type = "static"
 
 TEST(VerdictTest, ComparesWithTheBondedModel) {
   RunResult bonded = result_with(2.4e6, 0);
-  bonded.peaks[2].value = 0.01;
+  bonded.combined[0].value = bonded.combined[0].most[0] = 0.01;
   const Verdict verdict = judge(footing(), result_with(1.2e6, 0.6), &bonded);
   std::string all;
   for (const std::string& paragraph : verdict.paragraphs) all += paragraph + "\n";
