@@ -3,8 +3,8 @@
 
     python3 bench/random_steps.py build/release/uplift --set oscillators --count 100
 
-A structure of the set and number given is always the same. It runs at the suggested step h, with its companion, and at h/8; where the forces
-differ by more than 3 % also at h/16 and h/32, which tells whether its impacts are chaotic. The results are one line for each structure and
+The sets are oscillators and sticks in the plane and buildings in space. A structure of the set and number given is always the same. It
+runs at the suggested step h, with its companion, and at h/8; where the forces differ by more than 3 % also at h/16 and h/32, which tells whether its impacts are chaotic. The results are one line for each structure and
 the counts of docs/guide/choosing_the_joint_and_the_step.md. `--step-factor 2` takes twice the suggested step."""
 import argparse
 import concurrent.futures
@@ -17,10 +17,12 @@ import shutil
 import subprocess
 import tempfile
 
+import random_buildings
+
 RECORD = pathlib.Path(__file__).resolve().parents[1] / "tests" / "data" / "records" / "elcentro_akchopra.dat"
 FORCES = ("max_moment", "max_shear", "max_compression", "max_toe_pressure")
 ACCEPTED = 0.03
-SETS = {"oscillators": "A", "sticks": "B"}  # names of the first measurement: they seed the numbers
+SETS = {"oscillators": "A", "sticks": "B", "buildings": "S"}  # names of the first measurement: they seed the numbers
 GRAVITY = 9.81
 
 
@@ -141,7 +143,7 @@ def difference(first, second):
 
 
 def examine(program, name, factor, number):
-    text, what = structure(name, number)
+    text, what = random_buildings.structure(number) if name == "buildings" else structure(name, number)
     with tempfile.TemporaryDirectory() as made:
         folder = pathlib.Path(made)
         shutil.copy(RECORD, folder / "quake.dat")

@@ -1,5 +1,6 @@
 """What the verdict says must not depend on the step: example 02 with other steps and schemes, and the script that makes such tables."""
 
+import cmath
 import math
 import sys
 
@@ -83,7 +84,7 @@ class StepCheck(CliTest):
             self.assertIn("not examined", report_of(self.folder / "r")["summary"]["verdict"]["step_check"]["sentence"])
 
     def test_check_says_what_limits_the_step(self):
-        self.write(BASE)
+        self.write(BASE + "[damping]\nrayleigh = [{ frequency = 2, ratio = 0.1 }, { frequency = 100, ratio = 0.1 }]\n")
         found = json.loads(self.uplift("check", "case.toml", "--json").stdout)
         bounds = found["step_bounds"]
         self.assertEqual([bound["step"] for bound in bounds], sorted(bound["step"] for bound in bounds))
@@ -96,7 +97,7 @@ class StepCheck(CliTest):
                 self.assertTrue(any(abs(bound["step"] / step - 1) < 1e-9 for bound in bounds), (step, bounds))
         self.assertIn(bounds[0]["reason"], self.uplift("check", "case.toml").stdout)
 
-    def stick(self, law, head, footing, method="newton"):
+    def stick(self, law, head, footing, method="newton", more=""):
         """A massless column of 5 m, held sideways, on a footing of 3 m."""
         self.write(f"""title = "stick"
 method = "{method}"
@@ -135,7 +136,7 @@ type = "static"
 type = "dynamic"
 duration = 1
 step = 1e-3
-""")
+{more}""")
         return json.loads(self.uplift("check", "case.toml", "--json").stdout)["step_bounds"]
 
     def step_of(self, bounds, part):
@@ -160,6 +161,32 @@ step = 1e-3
         bounds = self.stick('{ type = "springs", K_n = 2e8, tangential = "none" }', 2e4, 20)
         self.assertGreater(math.sqrt(3 * 2e8 / 20) / (2 * math.pi), 300)
         self.assertIsNone(self.step_of(bounds, "bounce on the closed joint"))
+
+    def test_a_mode_without_damping_keeps_the_phase_error_until_the_next_impact(self):
+        # two masses on the springs k of the column and K of the joint: w^2 of K + k and k by hand
+        head, footing, column, joint = 2e4, 1e4, 4e7, 3 * 2e9
+        mean, product = ((column + joint) / footing + column / head) / 2, column * joint / (head * footing)
+        slow, fast = (math.sqrt(mean + sign * math.sqrt(mean**2 - product)) / (2 * math.pi) for sign in (-1, 1))
+        law = '{ type = "springs", K_n = 2e9, tangential = "none" }'
+
+        def difference(ratio, step, duration):
+            """Of free vibration by the trapezoidal rule from the exact one, the largest of all steps, relative to the first amplitude."""
+            pole = 2 * math.pi * fast * complex(-ratio, math.sqrt(1 - ratio**2))
+            taken = (1 + pole * step / 2) / (1 - pole * step / 2)
+            return max(abs(taken**n - cmath.exp(pole * step * n)) for n in range(round(duration / step) + 1))
+
+        found = {}
+        for ratio in (0.0, 0.002, 0.01, 0.02, 0.05):
+            points = f"{{ frequency = {slow}, ratio = {ratio} }}, {{ frequency = {fast}, ratio = {ratio} }}"
+            bounds = self.stick(law, head, footing, more=f"[damping]\nrayleigh = [{points}]\n" if ratio else "")
+            found[ratio] = next(bound["step"] for bound in bounds if f"the mode of {fast:.3g} Hz with the base bonded" in bound["reason"])
+        for ratio in (0.02, 0.05):  # as the number of steps was measured
+            self.assertAlmostEqual(found[ratio] * 16 * fast, 1, delta=1e-6)
+        accepted = difference(0.02, found[0.02], 1 / slow)
+        for ratio in (0.0, 0.01):
+            self.assertLess(found[ratio], 0.75 * found[0.02])
+            self.assertAlmostEqual(difference(ratio, found[ratio], 1 / slow) / accepted, 1, delta=0.05, msg=ratio)
+        self.assertLess(difference(0.002, found[0.002], 1 / slow), 1.05 * accepted)  # both bounds hold it
 
 
 if __name__ == "__main__":

@@ -72,9 +72,12 @@ Vibration vibration(const Matrix& stiffness, const Matrix& mass, int count) {
   if (shift == 0) shift = 1;
   constexpr double rigid = 1e-7;  // of the shift: below it w^2 is round-off
   Vibration result;
-  for (int pass = 0; pass < 8; ++pass) {
+  for (int pass = 0; pass < 12; ++pass) {
     const ScaledCholesky shifted(stiffness + shift * mass);
-    if (!shifted.regular) return result;
+    if (!shifted.regular) {
+      shift *= 1e3;  // it was made of the round-off of K; or a massless mechanism, which no shift helps
+      continue;
+    }
     result = with_shift(shifted, root, shift, static_cast<int>(root.cols()));
     double first = 0;
     for (Index i = 0; i < result.omega_squared.size() && first == 0; ++i)

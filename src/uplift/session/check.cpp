@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 
 #include "uplift/base/format.h"
 #include "uplift/base/text.h"
@@ -46,25 +47,49 @@ std::vector<double> frequencies(const std::vector<Mode>& found) {
   return values;
 }
 
+/// Modes of a model and how they are damped outside the joints.
+std::vector<ResolvedMode> damped(const Model& model, const std::vector<Mode>& modes) {
+  std::vector<ResolvedMode> made;
+  for (const Mode& mode : modes) {
+    const double omega = 2 * std::numbers::pi * mode.frequency;
+    double twice = 0;  // 2 zeta
+    if (omega > 0 && model.distributed == nullptr && model.damping.rows() == mode.shape.size())
+      twice = mode.shape.dot(model.damping * mode.shape) / omega;
+    else if (omega > 0)
+      twice = model.assembly.mass_damping / omega + model.assembly.stiffness_damping * omega;
+    made.push_back({mode.frequency, std::max(0.0, twice / 2)});
+  }
+  return made;
+}
+
 /// What the step has to resolve. In a small model all bonded modes are looked at: that in which a footing bounces on a stiff joint is far
 /// from the lowest. Modes of next to no mass, as of ground under single points, do not matter.
-ResolvedFrequencies resolved_frequencies(const Model& model, const CaseFindings& found) {
+ResolvedModes resolved_modes(const Model& model, const std::vector<Mode>& bonded, const std::vector<Mode>& base_free) {
   constexpr int small = 300, lowest_elastic = 5, most_rigid = 6;  // unknowns, modes
   constexpr double least_share = 0.05;                            // of the mass, in any direction
-  ResolvedFrequencies made{found.bonded, found.base_free, {}};
+  const auto lowest = [](const std::vector<ResolvedMode>& modes) {
+    ResolvedMode found;
+    for (const ResolvedMode& mode : modes)
+      if (mode.frequency > 0 && (found.frequency == 0 || mode.frequency < found.frequency)) found = mode;
+    return found;
+  };
+  ResolvedModes made{damped(model, bonded), damped(model, base_free), {}, {}};
+  made.lowest = lowest(made.bonded);
   if (model.free() > small) return made;
   const Sparse mass = assembled(model, &Local::mass);
-  for (const Mode& mode : bonded_modes(model, model.free())) {
-    const Vector shape = model.reduction * mode.shape;
+  const std::vector<Mode> all = bonded_modes(model, model.free());
+  const std::vector<ResolvedMode> all_damped = damped(model, all);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const Vector shape = model.reduction * all[k].shape;
     double share = 0;
     for (const Dof direction : {ux, uy, uz})
       if (direction != uz || model.space.dimension == 3) share = std::max(share, mass_share(model, mass, shape, direction));
-    if (share >= least_share) made.moving.push_back(mode.frequency);
+    if (share >= least_share) made.moving.push_back(all_damped[k]);
   }
+  if (!made.moving.empty()) made.lowest = lowest(made.moving);
   made.bonded.insert(made.bonded.end(), made.moving.begin(), made.moving.end());
-  made.base_free = frequencies(base_free_modes(model, lowest_elastic + most_rigid));
-  const auto elastic = std::ranges::find_if(made.base_free, [](double frequency) { return frequency > 0; });
-  made.base_free.erase(made.base_free.begin(), elastic);
+  made.base_free = damped(model, base_free_modes(model, lowest_elastic + most_rigid));
+  std::erase_if(made.base_free, [](const ResolvedMode& mode) { return !(mode.frequency > 0); });
   made.base_free.resize(std::min<std::size_t>(made.base_free.size(), lowest_elastic));
   return made;
 }
@@ -138,17 +163,19 @@ CaseFindings find(const Case& read, const RunSpec& spec, const BuiltCase& built)
     }
   }
   // modes need whole matrices and a factor on one process: of a large model whose matrices are distributed they are left out
-  if (built.model.distributed == nullptr || unknowns <= quick_modes) found.bonded = frequencies(bonded_modes(built.at_rest(), 5));
+  std::vector<Mode> bonded, base_free;
+  if (built.model.distributed == nullptr || unknowns <= quick_modes) bonded = bonded_modes(built.at_rest(), 5);
   if (unknowns <= quick_modes) {
     found.fixed = frequencies(fixed_base_modes(built.at_rest(), 3));
-    found.base_free = frequencies(base_free_modes(built.at_rest(), 5));
+    base_free = base_free_modes(built.at_rest(), 5);
   }
+  found.bonded = frequencies(bonded), found.base_free = frequencies(base_free);
   for (const Stage& stage : built.plan.stages)
     if (stage.type == Stage::Type::dynamics) found.steps += std::lround(stage.duration / stage.step);
   const bool tries = built.model.distributed == nullptr || unknowns <= most_to_try;
   if (const Stage* stage = dynamic_stage(built.plan); stage != nullptr && tries)
     found.ratios = stiffness_ratios(built.model, *stage, *built.plan.solver);
-  if (dynamic_stage(built.plan)) found.bounds = step_bounds(read, built, resolved_frequencies(built.at_rest(), found));
+  if (dynamic_stage(built.plan)) found.bounds = step_bounds(read, built, resolved_modes(built.at_rest(), bonded, base_free));
   if (!found.bounds.empty()) found.suggested_step = rounded_down(found.bounds.front().step);
   if (tries) try_steps(found, built);
   found.warnings = warnings(read, spec, built);

@@ -153,5 +153,21 @@ TEST(ModesOfMany, FewMassesOnAManyTimesLongerChain) {
   }
 }
 
+/// A free chain of two masses, and a third one whose stiffness is what round-off has left of terms as large as theirs: two rigid motions
+/// and w^2 = 2 k/m, wherever round-off puts the first guess of the shift.
+TEST(Modes, OfAFreeStructureWithRoundOffOnADiagonal) {
+  constexpr double k = 1e10;
+  for (const double left : {0.0, 1e-7, 1e-5, 1e-3}) {
+    Matrix stiffness = Matrix::Zero(3, 3);
+    stiffness.topLeftCorner(2, 2) << k, -k, -k, k;
+    stiffness(2, 2) = left;
+    const Vibration found = vibration(stiffness, Matrix::Identity(3, 3), 3);
+    ASSERT_EQ(found.omega_squared.size(), 3) << left;
+    EXPECT_LT(found.omega_squared[0], 1e-6 * k) << left;
+    EXPECT_LT(found.omega_squared[1], 1e-6 * k) << left;
+    EXPECT_NEAR(found.omega_squared[2], 2 * k, 1e-6 * k) << left;
+  }
+}
+
 }  // namespace
 }  // namespace uplift::modes_test

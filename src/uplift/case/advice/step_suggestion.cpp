@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "uplift/base/format.h"
 #include "uplift/case/mesh/mesh.h"
@@ -17,28 +19,33 @@ constexpr double steps_a_period_of_bounces = 8, highest_of_bounces = 1000;  // H
 constexpr double steps_a_period_of_floors = 40, highest_of_floors = 33;     // Hz: above, the spectrum of an earthquake is that of the peak
 constexpr double accepted_difference = 0.01, least_step = 1e-5, most_step = 0.1;
 
-/// Vibrations of the structure, `which`: "with the base bonded".
-void bound_by_modes(const std::vector<double>& frequencies, std::string_view which, std::vector<StepBound>& bounds) {
-  double slow = 0, fast = 0;
-  for (const double frequency : frequencies) {
-    if (frequency < highest_of_structure)
-      slow = std::max(slow, frequency);
-    else if (frequency < highest_of_vibration)
-      fast = std::max(fast, frequency);
+/// The mode that takes the smallest step of those from one frequency to below another.
+void bound_by_range(const std::vector<ResolvedMode>& modes, double from, double below, double steps, const ResolvedMode& lowest,
+                    std::string_view which, std::vector<StepBound>& bounds) {
+  StepBound smallest;
+  for (const ResolvedMode& mode : modes) {
+    if (!(mode.frequency > 0 && mode.frequency >= from && mode.frequency < below)) continue;
+    const double factor = steps_for_memory(mode, lowest), step = 1 / (factor * steps * mode.frequency);
+    if (smallest.step > 0 && step >= smallest.step) continue;
+    const std::string count = factor > 1 ? fmt::format("{:.0f}", factor * steps) : steps == steps_a_period ? "twenty" : "sixteen";
+    smallest = {step, fmt::format("{} steps a period of the mode of {} {}{}", count, format_quantity(mode.frequency, "Hz"), which,
+                                  factor > 1 ? ", which is hardly damped" : "")};
   }
-  if (slow > 0)
-    bounds.push_back(
-        {1 / (steps_a_period * slow), fmt::format("twenty steps a period of the mode of {} {}", format_quantity(slow, "Hz"), which)});
-  if (fast > 0)
-    bounds.push_back({1 / (steps_a_period_of_vibration * fast),
-                      fmt::format("sixteen steps a period of the mode of {} {}", format_quantity(fast, "Hz"), which)});
+  if (smallest.step > 0) bounds.push_back(std::move(smallest));
+}
+
+/// Vibrations of the structure, `which`: "with the base bonded".
+void bound_by_modes(const std::vector<ResolvedMode>& modes, const ResolvedMode& lowest, std::string_view which,
+                    std::vector<StepBound>& bounds) {
+  bound_by_range(modes, 0, highest_of_structure, steps_a_period, lowest, which, bounds);
+  bound_by_range(modes, highest_of_structure, highest_of_vibration, steps_a_period_of_vibration, lowest, which, bounds);
 }
 
 /// An impact on a stiff joint is half a period of the bounce on it. Whether the structure comes off again, and with it the momentum that
 /// the window of the verdict sees, is decided within that time.
-void bound_by_bounces(const std::vector<double>& moving, std::vector<StepBound>& bounds) {
+void bound_by_bounces(const std::vector<ResolvedMode>& moving, std::vector<StepBound>& bounds) {
   double highest = 0;
-  for (const double frequency : moving) highest = std::max(highest, frequency);
+  for (const ResolvedMode& mode : moving) highest = std::max(highest, mode.frequency);
   if (highest < highest_of_vibration) return;
   const double resolved = std::min(highest, highest_of_bounces);
   const std::string reason =
@@ -131,12 +138,24 @@ double step_that_resolves(const TimeFunction& function, int derivative, double d
   return std::max(step, least_step);
 }
 
-std::vector<StepBound> step_bounds(const Case& read, const BuiltCase& built, const ResolvedFrequencies& frequencies) {
+double steps_for_memory(const ResolvedMode& mode, const ResolvedMode& lowest) {
+  constexpr double measured_damping = 0.02, little = 1.05, most = 4;  // of the structures with which the steps a period were measured
+  if (!(lowest.frequency > 0)) return 1;
+  const double damping = std::max(mode.damping, lowest.damping);
+  const double until_impact = 2 * std::numbers::pi * mode.frequency / lowest.frequency;  // w t
+  const double remembered = damping > 0 ? std::min(until_impact, 1 / (std::numbers::e * damping)) : until_impact;
+  const double factor = std::sqrt(remembered * std::numbers::e * measured_damping);
+  return factor < little ? 1 : std::min(factor, most);
+}
+
+std::vector<StepBound> step_bounds(const Case& read, const BuiltCase& built, const ResolvedModes& modes) {
   std::vector<StepBound> bounds;
-  bound_by_modes(frequencies.bonded, "with the base bonded", bounds);
-  if (!built.model.interfaces.empty()) {
-    bound_by_modes(frequencies.base_free, "with the base free", bounds);
-    bound_by_bounces(frequencies.moving, bounds);
+  const bool opens = !built.model.interfaces.empty();
+  const ResolvedMode lowest = opens ? modes.lowest : ResolvedMode();  // without impacts no phase matters
+  bound_by_modes(modes.bonded, lowest, "with the base bonded", bounds);
+  if (opens) {
+    bound_by_modes(modes.base_free, lowest, "with the base free", bounds);
+    bound_by_bounces(modes.moving, bounds);
   }
   bound_by_contact_mesh(read, built, bounds);
   bound_by_floors(built.plan, bounds);
