@@ -1,5 +1,6 @@
 #include "uplift/math/vibration.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "uplift/math/dense.h"
@@ -65,10 +66,14 @@ Vibration vibration(const Matrix& stiffness, const Matrix& mass, int count) {
   const ScaledCholesky unshifted(stiffness);
   if (unshifted.regular) return with_shift(unshifted, root, 0, count);
 
-  // Rigid motions. First guess: the smallest Rayleigh quotient of a single unknown, an upper bound of the first elastic w^2.
-  double shift = 0;
+  // Rigid motions. First guess: the smallest Rayleigh quotient of a single unknown, an upper bound of the first elastic w^2; not one that
+  // round-off has left of terms like the others.
+  constexpr double round_off = 1e-14;  // of the largest
+  double shift = 0, largest = 0;
+  const auto quotient = [&](Index i) { return mass(i, i) > 0 ? stiffness(i, i) / mass(i, i) : 0; };
+  for (Index i = 0; i < mass.rows(); ++i) largest = std::max(largest, quotient(i));
   for (Index i = 0; i < mass.rows(); ++i)
-    if (mass(i, i) > 0 && stiffness(i, i) > 0 && (shift == 0 || stiffness(i, i) / mass(i, i) < shift)) shift = stiffness(i, i) / mass(i, i);
+    if (const double here = quotient(i); here > round_off * largest && (shift == 0 || here < shift)) shift = here;
   if (shift == 0) shift = 1;
   constexpr double rigid = 1e-7;  // of the shift: below it w^2 is round-off
   Vibration result;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <numbers>
@@ -79,14 +80,23 @@ ResolvedModes resolved_modes(const Model& model, const std::vector<Mode>& bonded
   const Sparse mass = assembled(model, &Local::mass);
   const std::vector<Mode> all = bonded_modes(model, model.free());
   const std::vector<ResolvedMode> all_damped = damped(model, all);
+  std::array<double, 3> largest{};  // share along an axis
+  std::array<ResolvedMode, 3> main;
   for (std::size_t k = 0; k < all.size(); ++k) {
     const Vector shape = model.reduction * all[k].shape;
-    double share = 0;
-    for (const Dof direction : {ux, uy, uz})
-      if (direction != uz || model.space.dimension == 3) share = std::max(share, mass_share(model, mass, shape, direction));
-    if (share >= least_share) made.moving.push_back(all_damped[k]);
+    double most = 0;
+    for (int axis = 0; axis < model.space.dimension; ++axis) {
+      const auto along = static_cast<std::size_t>(axis);
+      const double share = mass_share(model, mass, shape, model.space.dof(axis));
+      if (share > largest[along]) largest[along] = share, main[along] = all_damped[k];
+      most = std::max(most, share);
+    }
+    if (most >= least_share) made.moving.push_back(all_damped[k]);
   }
   if (!made.moving.empty()) made.lowest = lowest(made.moving);
+  for (std::size_t axis = 0; axis < main.size(); ++axis)  // what sways along one axis may have dashpots that another lacks
+    if (static_cast<int>(axis) != model.space.up() && largest[axis] >= least_share)
+      made.lowest.damping = std::min(made.lowest.damping, main[axis].damping);
   made.bonded.insert(made.bonded.end(), made.moving.begin(), made.moving.end());
   made.base_free = damped(model, base_free_modes(model, lowest_elastic + most_rigid));
   std::erase_if(made.base_free, [](const ResolvedMode& mode) { return !(mode.frequency > 0); });

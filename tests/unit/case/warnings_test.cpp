@@ -134,27 +134,5 @@ TEST(ResultWarnings, LatePeaks) {
   EXPECT_TRUE(result_warnings(failed, numbers).empty());
 }
 
-// A vibration of 5 Hz that is recorded 9.5 times a period: its crest may fall in the middle between two rows, 1 - cos(pi/9.5) above them.
-TEST(ResultWarnings, PeaksBetweenTheRows) {
-  VerdictNumbers numbers;
-  numbers.whole = {{find_verdict_quantity("max_drift"), 0.01, 1.0}};
-  const auto said = [&](double apart, double size, double beside) {
-    RunResult run = run_of_ten_seconds();
-    run.columns.resize(2);
-    for (Request& column : run.columns) column.kind = Request::Kind::displacement;
-    run.peaks = {{"top.ux", "m", beside, 0}, {"top.uy", "m", size, 0}};
-    run.table = {{0, apart, 2 * apart}, {0, beside, 0}, {}};
-    for (const double t : {-0.5 * apart, 0.5 * apart, 1.5 * apart}) run.table[2].push_back(-size * std::cos(2 * std::numbers::pi * 5 * t));
-    return result_warnings(run, numbers);
-  };
-  const double apart = 0.2 / 9.5;
-  ASSERT_EQ(said(apart, 0.01, 0.01).size(), 1u);
-  EXPECT_NE(said(apart, 0.01, 0.01).front().find(percent(1 - std::cos(std::numbers::pi / 9.5))), std::string::npos);
-  EXPECT_TRUE(said(apart / 4, 0.01, 0.01).empty());  // 0.34 %
-  EXPECT_TRUE(said(apart, 1e-6, 0.01).empty());      // beside the other motion it is none
-  numbers.whole.clear();
-  EXPECT_TRUE(said(apart, 0.01, 0.01).empty());  // no drift is asked for
-}
-
 }  // namespace
 }  // namespace uplift::warnings_test

@@ -23,13 +23,14 @@ struct ResolvedModes {
   std::vector<ResolvedMode> bonded;     // with the interfaces closed, the lowest, and `moving`
   std::vector<ResolvedMode> base_free;  // with the interfaces open, the lowest elastic ones: while the structure rocks or flies
   std::vector<ResolvedMode> moving;     // bonded ones of small models, however high, that move part of the mass
-  ResolvedMode lowest;                  // of the bonded ones that move part of the mass; 0 Hz: there is none
+  // The lowest bonded one that moves part of the mass, with the least damping of those that sway most along an axis; 0 Hz: there is none
+  ResolvedMode lowest;
 };
 
 /// By how many times more steps a period takes a mode of a structure with little damping than one with 2 %, from 1 to 4. The trapezoidal
 /// rule delays free vibration by the phase w t (w h)^2/12. With damping the difference is largest at t = 1/(zeta w), 1/e of (w h)^2/(12
 /// zeta) of the amplitude; without, it grows until the next impact, which comes within a period of the lowest mode, and is handed on there.
-/// Number of steps ~ its root; less than a twentieth more is none. What the lowest mode forgets, which carries the structure from impact to
+/// Number of steps ~ its root; less than a twentieth more is none. What the lowest modes forget, which carry the structure from impact to
 /// impact, the others do not remember.
 double steps_for_memory(const ResolvedMode& mode, const ResolvedMode& lowest);
 
