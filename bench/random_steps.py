@@ -4,8 +4,9 @@
     python3 bench/random_steps.py build/release/uplift --set oscillators --count 100
 
 The sets are oscillators and sticks in the plane and buildings in space. A structure of the set and number given is always the same. It
-runs at the suggested step h, with its companion, and at h/8; where the forces differ by more than 3 % also at h/16 and h/32, which tells whether its impacts are chaotic. The results are one line for each structure and
-the counts of docs/guide/choosing_the_joint_and_the_step.md. `--step-factor 2` takes twice the suggested step."""
+runs at the suggested step h, with its companion, and at h/8; where the forces differ by more than 3 % also at h/16 and h/32, which tells
+whether its impacts are chaotic. The results are one line for each structure and the counts of
+docs/guide/choosing_the_joint_and_the_step.md. `--step-factor 2` takes twice the suggested step."""
 import argparse
 import concurrent.futures
 import functools
