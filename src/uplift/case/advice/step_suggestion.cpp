@@ -151,7 +151,8 @@ double steps_for_memory(const ResolvedMode& mode, const ResolvedMode& lowest) {
 std::vector<StepBound> step_bounds(const Case& read, const BuiltCase& built, const ResolvedModes& modes) {
   std::vector<StepBound> bounds;
   const bool opens = !built.model.interfaces.empty();
-  const ResolvedMode lowest = opens ? modes.lowest : ResolvedMode();  // without impacts no phase matters
+  // without impacts no phase matters; those of constraints come at the ends of steps, an error of first order that outweighs it
+  const ResolvedMode lowest = opens && !built.plan.method->constrains() ? modes.lowest : ResolvedMode();
   bound_by_modes(modes.bonded, lowest, "with the base bonded", bounds);
   if (opens) {
     bound_by_modes(modes.base_free, lowest, "with the base free", bounds);
