@@ -392,6 +392,39 @@ class Laws(unittest.TestCase):
             self.assertLess(abs(theirs[name] - mine[name]).max() / abs(theirs[name]).max(), 5e-4, name)
         self.assertLess(abs(mine.energy.residual), 1e-9 * mine.energy.scale)
 
+    def test_a_law_that_holds_tension_gapes_as_its_own_kind(self):
+        """A softening joint of one's own, without stiffness in shear, beside the joint of the library with the same equations."""
+        strength, energy = 2e5, 900.0  # Pa, J/m2
+        first, last = strength / K, 2 * energy / strength  # m: openings at which it begins to soften, and at which nothing is left
+
+        def softening(start, end, memory, step):
+            opening = end[-1]
+            largest = np.maximum(np.maximum(memory[0], opening), 0)
+            left = np.clip(strength * (last - largest) / (last - first), 0, None)
+            intact = largest <= first
+            secant = np.where(intact, K, left / np.where(intact, 1, largest))
+            grows = ~intact & (opening >= memory[0])
+            traction, slope = np.zeros_like(end), np.zeros_like(end)
+            traction[-1] = np.where(opening < 0, K, secant) * opening
+            slope[-1] = np.where(opening < 0, K, np.where(grows, np.where(largest < last, -strength / (last - first), 0), secant))
+            spent = np.where(intact, 0, energy - left**2 * (last - first) / (2 * strength) - left * largest / 2)
+            return traction, slope, largest[None], 0.5 * traction[-1] * opening, spent
+
+        def run(law):
+            case = pier(law, "4 s")
+            case.spring(["base"], direction=[1, 0], stiffness="3 GN/m")  # the joint has no shear
+            case.document["stage"][-1]["traction"] = "end"
+            return case.run(step_check=False)
+
+        theirs = run(up.laws.bilinear(K_n=K, F_u=strength, G_f=energy, tangential="none"))
+        mine = run(up.law(softening, K_n=K, memory=1))
+        self.assertEqual(mine.status, "completed")
+        self.assertGreater(theirs.verdict.uplift, 0.2)
+        for name in ("deck.ux", "underside.moment", "underside.max_opening", "underside.uplifted_ratio"):
+            self.assertLess(abs(theirs[name] - mine[name]).max(), 1e-8 * abs(theirs[name]).max(), name)
+        for name in ("deck.ux", "underside.moment"):  # the bonded joint without shear too
+            self.assertLess(abs(theirs.bonded[name] - mine.bonded[name]).max(), 1e-8 * abs(theirs.bonded[name]).max(), name)
+
     def test_memory_and_dissipation(self):
         """Springs that lose their stiffness with the largest opening: the ledger closes, and what is lost is in it."""
         critical = 5e-3  # m

@@ -87,7 +87,8 @@ bool opens_as_a_plane(const Model& model, const Interface& interface, const std:
 GapRule gap_rule(const Interface& interface) {
   if (interface.law == nullptr || interface.batch.rotations > 0) return {};
   const LawScales scales = interface.law->scales();
-  return {scales.opens, scales.strength > 0 ? 1 / normal_stiffness(interface) : 0};
+  const bool may_pull = scales.strength > 0 || interface.behaviour == "external";  // what a function of the caller's does is not known
+  return {scales.opens, may_pull ? 1 / normal_stiffness(interface) : 0};
 }
 
 InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance, const std::vector<std::vector<int>>& bases,
@@ -126,7 +127,8 @@ InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance, const
       layout.corners = facets[k]->corners;
       layout.at_edge = facets[k]->at_edge;
       const int row = first + (layout.translations - 1) * layout.points;
-      const bool bare = layout.rule.opens && layout.rule.softness == 0 && std::isfinite(layout.stiffness);  // it gives, and never pulls
+      const bool bare = layout.rule.opens && !(interface.law != nullptr && interface.law->scales().strength > 0) &&
+                        std::isfinite(layout.stiffness);  // it gives, and never pulls
       if ((bare || layout.bonded) && opens_as_a_plane(model, interface, layout.slope_weight, row)) {
         layout.plane = bare;
         layout.plane_tractions = layout.bonded && interface.weight.size() == interface.area.size() && interface.weight == interface.area;
@@ -308,7 +310,8 @@ void InterfaceViewer::look(const State& state, std::vector<InterfaceView>& views
     view.least_opening = smallest(least);
     view.max_pressure = largest(pressure);
     const auto in_parts = [&](double share) { return !layout.share.empty() && share > 0 && share < whole; };
-    if (layout.plane)
+    const bool plane = layout.plane && !(layout.rule.softness > 0 && state.force.segment(normal, n).maxCoeff() > 0);
+    if (plane)
       look_at_plane(layout, gap, view);
     else if (in_parts(view.open_area))
       view.open_area = open_share(layout, gap, p, view);
@@ -316,7 +319,7 @@ void InterfaceViewer::look(const State& state, std::vector<InterfaceView>& views
       view.tension_area = tension_share(layout, p);
     if (!layout.corners.empty()) {
       if (layout.at_edge) view.max_pressure = std::max(view.max_pressure, edge_pressure(layout, p));
-      if (!layout.plane && view.max_opening > tolerance) view.max_opening = std::max(view.max_opening, edge_opening(layout, gap));
+      if (!plane && view.max_opening > tolerance) view.max_opening = std::max(view.max_opening, edge_opening(layout, gap));
     }
     view.rotation = {sum(slopes), 0};
     if (layout.slope_weight[1].size() > 0) view.rotation[1] = small::dot(n, layout.slope_weight[1].data(), stretch);

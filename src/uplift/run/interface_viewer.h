@@ -11,7 +11,8 @@
 
 namespace uplift {
 
-/// How a joint opens: a bonded one never does, and one that holds tension t is stretched by t/K_n before (docs/theory, section 2).
+/// How a joint opens: a bonded one never does, and one that holds tension t, as a law of the caller's may, is stretched by t/K_n before
+/// (docs/theory, section 2).
 struct GapRule {
   bool opens = true;
   double softness = 0;  // 1/K_n [m/Pa]; 0: no tension is held

@@ -27,7 +27,7 @@ Values bonded_behaviour(const Values& like, const std::vector<double>& stiffness
   add("type", std::string("elastic"));
   add("K_n", stiffness.back());
   if (like.items().contains("c") && like.has("c")) add("c", like.number("c"));
-  if (stiffness.size() > 1)
+  if (stiffness.size() > 1 && stiffness.front() > 0)
     add("K_t", stiffness.front());
   else
     add("tangential", std::string("none"));
