@@ -233,6 +233,82 @@ quantity = "uy"
         largest = max(map(abs, expected))
         self.assertLess(max(abs(a - b) for a, b in zip(found, expected)), 2e-3 * largest)
 
+    def test_bar_on_a_support_that_starts_and_stops_at_once(self):
+        """The bar of one element, m/3 u'' + k u = k d - m/6 d'': where the velocity of the support jumps by c, that of the free end jumps by
+        -c/2. Ramps and half waves in closed form, the ramp also as a table, between the steps of the run too."""
+        step, amplitude, mass, k = 2e-4, 0.01, 7850 * 0.01 * 10, 2e7
+        omega = sqrt(3 * k / mass)
+        for begin, length in ((0.05, 0.12), (0.05007, 0.11955)):
+            wave, speed = pi / length, amplitude / length
+
+            def after(t, u, v, rest):
+                return rest + (u - rest) * cos(omega * t) + v / omega * sin(omega * t)
+
+            def ramp(t):
+                """Displacement and velocity of the free end, from the beginning of the ramp to its end."""
+                b = -1.5 * speed / omega
+                return speed * t + b * sin(omega * t), speed + b * omega * cos(omega * t)
+
+            def half_wave(t):
+                p = amplitude * (omega**2 + wave**2 / 2) / (omega**2 - wave**2)
+                b = -wave * (p + amplitude / 2) / omega
+                return p * sin(wave * t) + b * sin(omega * t), p * wave * cos(wave * t) + b * omega * cos(omega * t)
+
+            for shape, during, jump, rest in (
+                    (f'{{ type = "ramp", start = {begin}, duration = {length} }}', ramp, speed / 2, amplitude),
+                    (f'{{ type = "table", times = [{begin}, {begin + length}], values = [0, 1] }}', ramp, speed / 2, amplitude),
+                    (f'{{ type = "half_sine", start = {begin}, duration = {length} }}', half_wave, -amplitude * wave / 2, 0)):
+                with self.subTest(shape=shape):
+                    self.write(f"""title = "bar"
+bonded = false
+[nodes]
+top = [0, 10]
+end = [0, 0]
+[[beam]]
+name = "bar"
+nodes = ["end", "top"]
+E = {k * 10 / 0.01}
+A = 0.01
+I = 1e-6
+mass = "consistent"
+density = 7850
+[[support]]
+node = "end"
+fixed = ["ux", "rz"]
+[[support]]
+node = "top"
+fixed = ["ux", "rz"]
+[[function]]
+name = "motion"
+shape = {shape}
+[[motion]]
+node = "top"
+direction = "uy"
+amplitude = {amplitude}
+function = "motion"
+[[stage]]
+type = "dynamic"
+duration = 0.25
+step = {step}
+[output]
+frames = 0
+[[output.history]]
+name = "u"
+node = "end"
+quantity = "uy"
+""")
+                    self.uplift("run", "case.toml", "-o", "r", "--no-step-check")
+                    with open(self.folder / "r" / "histories.csv") as file:
+                        rows = list(csv.reader(file))
+                    column = [name.split(" [")[0] for name in rows[0]].index("u")
+                    u, v = during(length)
+                    largest = error = 0.0
+                    for row in rows[1:]:
+                        t = float(row[0]) - begin
+                        expected = 0 if t < 0 else during(t)[0] if t < length else after(t - length, u, v + jump, rest)
+                        largest, error = max(largest, abs(expected)), max(error, abs(float(row[column]) - expected))
+                    self.assertLess(error, 0.01 * largest)
+
     def test_sliding_under_a_pressure_that_oscillates(self):
         """A block slides while it bounces on its joint without lifting off: against Verlet's method with Coulomb's law at the end of every one of
         its short steps. The error falls with the step, with energy_decay faster."""

@@ -18,6 +18,7 @@
 #include "uplift/linear/large.h"
 #include "uplift/model/base_size.h"
 #include "uplift/model/check.h"
+#include "uplift/model/function_jumps.h"
 #include "uplift/model/model_matrices.h"
 #include "uplift/model/tuned_mass.h"
 
@@ -141,6 +142,27 @@ std::vector<double> tuned_masses(const Case& read, const RunSpec& spec) {
   return {tuned_mass(model, names.node(tuned->node), tuned->tuned_frequency, tuned->where("tuned_frequency"))};
 }
 
+/// Supports that start or stop with a velocity pass an impulse on to masses that they share with free nodes. It acts within the steps
+/// beside that time. What moves from the beginning on, or stops with the run, has none.
+void add_pulses(const CaseInput& input, const std::vector<Stage>& stages, std::vector<std::shared_ptr<const TimeFunction>>& functions) {
+  if (input.motions.empty()) return;
+  for (std::shared_ptr<const TimeFunction>& function : functions) {
+    if (!function) continue;
+    std::vector<FunctionBend> pulses;
+    double begin = 0;
+    for (const Stage& stage : stages) {
+      if (stage.type != Stage::Type::dynamics) continue;
+      const double end = begin + stage.duration, least = begin > 0 ? begin : stage.step;  // the first step has nothing before it
+      const double round_off = 1e-6 * stage.step;
+      for (const FunctionBend& bend : bends_of(*function))
+        if (bend.time > (begin > 0 ? begin - round_off : round_off) && bend.time < end - round_off && bend.change != 0)
+          pulses.push_back({std::max(bend.time, least), bend.change, stage.step});
+      begin = end;
+    }
+    if (!pulses.empty()) function = with_pulses(std::move(function), std::move(pulses));
+  }
+}
+
 /// The model of a run. `dynamic`: the model without the supports of static stages alone, when that with them is wanted; null: without them.
 Model make_model(const Case& read, const RunSpec& spec, const std::vector<double>& tuned, const Model* dynamic, CaseNames& names,
                  BuiltCase& built) {
@@ -153,6 +175,7 @@ Model make_model(const Case& read, const RunSpec& spec, const std::vector<double
   names.functions_used = &built.functions;
   names.share = newmark_share(built.plan.stages);
   add_functions(read, names);
+  add_pulses(*read.input, built.plan.stages, names.functions_made);
   add_structure(read, builder, names, tuned, dynamic != nullptr);
   add_ties(*read.input, builder, names);
   add_faces(read, builder, names);

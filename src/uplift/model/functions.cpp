@@ -1,9 +1,11 @@
 // Functions of time in closed form. All are shapes without unit that multiply an amplitude; rate and acceleration are their derivatives
 // [1/s, 1/s2].
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
-#include "uplift/model/function.h"
+#include "uplift/model/function_jumps.h"
 
 namespace uplift {
 
@@ -30,6 +32,11 @@ class Sine : public TimeFunction {
   double value(double t) const override { return inside(t) ? amplitude_ * std::sin(angle(t)) : 0; }
   double rate(double t) const override { return inside(t) ? amplitude_ * omega_ * std::cos(angle(t)) : 0; }
   double acceleration(double t) const override { return inside(t) ? -amplitude_ * omega_ * omega_ * std::sin(angle(t)) : 0; }
+  std::vector<FunctionBend> bends() const {
+    std::vector<FunctionBend> found{{start_, rate(start_), 0}};
+    if (std::isfinite(end_)) found.push_back({end_, -rate(end_), 0});
+    return found;
+  }
 
  private:
   bool inside(double t) const { return t >= start_ && t <= end_; }
@@ -47,6 +54,10 @@ class Ramp : public TimeFunction {
   }
   double rate(double t) const override { return t > start_ && t < start_ + duration_ ? (to_ - from_) / duration_ : 0; }
   double acceleration(double) const override { return 0; }
+  std::vector<FunctionBend> bends() const {
+    const double slope = (to_ - from_) / duration_;
+    return {{start_, slope, 0}, {start_ + duration_, -slope, 0}};
+  }
 
  private:
   double from_, to_, start_, duration_;
@@ -80,6 +91,25 @@ Field amplitude() {
 Field start() {
   return number("start", "s", "time at which it begins").standard(0.0);
 }
+
+class Pulses final : public TimeFunction {
+ public:
+  Pulses(std::shared_ptr<const TimeFunction> function, std::vector<FunctionBend> bends)
+      : function_(std::move(function)), bends_(std::move(bends)) {}
+  double value(double t) const override { return function_->value(t); }
+  double rate(double t) const override { return function_->rate(t); }
+  double acceleration(double t) const override {
+    double sum = function_->acceleration(t);
+    for (const FunctionBend& bend : bends_)
+      sum += bend.change * std::max(0.0, 1 - std::abs(t - bend.time) / bend.half_width) / bend.half_width;
+    return sum;
+  }
+  bool is_one() const override { return function_->is_one(); }
+
+ private:
+  std::shared_ptr<const TimeFunction> function_;
+  std::vector<FunctionBend> bends_;
+};
 
 }  // namespace
 
@@ -148,6 +178,16 @@ const Entry<TimeFunction>& entry_function_harmonic() {
                                                                          v.number("phase"), v.number("start"), end);
                                          }};
   return entry;
+}
+
+std::vector<FunctionBend> bends_of(const TimeFunction& function) {
+  if (const auto* sine = dynamic_cast<const Sine*>(&function)) return sine->bends();
+  if (const auto* ramp = dynamic_cast<const Ramp*>(&function)) return ramp->bends();
+  return bends_of_table(function);
+}
+
+std::shared_ptr<const TimeFunction> with_pulses(std::shared_ptr<const TimeFunction> function, std::vector<FunctionBend> bends) {
+  return std::make_shared<Pulses>(std::move(function), std::move(bends));
 }
 
 }  // namespace uplift

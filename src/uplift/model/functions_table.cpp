@@ -19,7 +19,7 @@ namespace {
 /// point that of the piece before it. The acceleration of a straight line is zero and its slope
 /// jumps at the points: every jump is spread over the two pieces beside its point, highest there and zero at the neighbours, so that the
 /// integral over all time is the jump. On equal steps this is the second central difference, straight in between (error of order 2 for a
-/// sampled motion). The first and the last point have none. A time that is outside by no more than round-off (a sum of many steps) belongs
+/// sampled motion). The first and the last point have none here (bends_of). A time that is outside by no more than round-off (a sum of many steps) belongs
 /// to the first or the last point.
 class Table : public TimeFunction {
  public:
@@ -47,6 +47,7 @@ class Table : public TimeFunction {
     if (values_.back() != 0) found.push_back({times_.back(), values_.back(), 0});
     return found;
   }
+  std::vector<FunctionBend> bends() const { return {{times_.front(), slope(0), 0}, {times_.back(), -slope(times_.size() - 2), 0}}; }
 
  private:
   double round_off() const { return 1e-9 * std::max(std::abs(times_.back()), times_.back() - times_.front()); }  // s
@@ -174,6 +175,11 @@ std::unique_ptr<const TimeFunction> make_csv(const Values& v) {
 }
 
 }  // namespace
+
+std::vector<FunctionBend> bends_of_table(const TimeFunction& function) {
+  const auto* table = dynamic_cast<const Table*>(&function);
+  return table != nullptr ? table->bends() : std::vector<FunctionBend>();
+}
 
 std::vector<FunctionJump> jumps_of(const TimeFunction& function) {
   const auto* table = dynamic_cast<const Table*>(&function);
