@@ -19,8 +19,8 @@ namespace {
 /// point that of the piece before it. The acceleration of a straight line is zero and its slope
 /// jumps at the points: every jump is spread over the two pieces beside its point, highest there and zero at the neighbours, so that the
 /// integral over all time is the jump. On equal steps this is the second central difference, straight in between (error of order 2 for a
-/// sampled motion). The first and the last point have none here (bends_of). A time that is outside by no more than round-off (a sum of many steps) belongs
-/// to the first or the last point.
+/// sampled motion). The first and the last point have none here (bends_of). A time that is outside by no more than round-off (a sum of many
+/// steps) belongs to the first or the last point.
 class Table : public TimeFunction {
  public:
   Table(std::vector<double> times, std::vector<double> values, bool hold)
