@@ -10,9 +10,9 @@ ORDER = "base math statistics mesh laws elements interface model linear contact 
 ROOT = pathlib.Path(__file__).resolve().parent.parent / "src" / "uplift"
 
 # Who takes a case from Case::input, and where tables are still asked for by their name: declared in the same file, or of elements and records.
-TAKES_INPUT = ("case/", "verdict/", "study/trust", "io/", "session/", "capi/", "ensemble/")
+TAKES_INPUT = ("case/", "verdict/", "study/trust", "io/", "session/", "capi/", "ensemble/", "cli/")
 READS_TABLES = ("case/schema/", "case/build/criteria.cpp", "case/build/records.cpp", "case/build/model.cpp", "case/read.cpp", "case/mesh/mesh.cpp",
-                "case/advice/warnings.cpp", "case/advice/input_warnings.cpp")
+                "case/advice/warnings.cpp", "case/advice/input_warnings.cpp", "cli/soil.cpp")
 READ_BY_NAME = re.compile(r"(\b(values|root|root_)(\.|->)(number|integer|flag|text|texts|numbers|table|tables|part|has|given)\(|table_if\([\w.>-]*(values|root),\s*)\"")
 
 theory = (ROOT.parent.parent / "docs" / "theory" / "README.md").read_text()

@@ -238,7 +238,8 @@ quantity = "uy"
         -c/2. Ramps and half waves in closed form, the ramp also as a table, between the steps of the run too."""
         step, amplitude, mass, k = 2e-4, 0.01, 7850 * 0.01 * 10, 2e7
         omega = sqrt(3 * k / mass)
-        for begin, length in ((0.05, 0.12), (0.05007, 0.11955)):
+        for begin, length, coarse in ((0.05, 0.12, False), (0.05007, 0.11955, False), (0.05, 0.12, True)):
+            stages = ((0.05, 10 * step), (0.2, step)) if coarse else ((0.25, step),)
             wave, speed = pi / length, amplitude / length
 
             def after(t, u, v, rest):
@@ -258,7 +259,7 @@ quantity = "uy"
                     (f'{{ type = "ramp", start = {begin}, duration = {length} }}', ramp, speed / 2, amplitude),
                     (f'{{ type = "table", times = [{begin}, {begin + length}], values = [0, 1] }}', ramp, speed / 2, amplitude),
                     (f'{{ type = "half_sine", start = {begin}, duration = {length} }}', half_wave, -amplitude * wave / 2, 0)):
-                with self.subTest(shape=shape):
+                with self.subTest(shape=shape, coarse=coarse):
                     self.write(f"""title = "bar"
 bonded = false
 [nodes]
@@ -286,17 +287,15 @@ node = "top"
 direction = "uy"
 amplitude = {amplitude}
 function = "motion"
-[[stage]]
-type = "dynamic"
-duration = 0.25
-step = {step}
 [output]
 frames = 0
 [[output.history]]
 name = "u"
 node = "end"
 quantity = "uy"
-""")
+""" + "".join(f'[[stage]]\ntype = "dynamic"\nduration = {duration}\nstep = {each}\n' for duration, each in stages))
+                    told = self.uplift("check", "case.toml").stdout
+                    self.assertNotIn("do not follow the load", told)
                     self.uplift("run", "case.toml", "-o", "r", "--no-step-check")
                     with open(self.folder / "r" / "histories.csv") as file:
                         rows = list(csv.reader(file))

@@ -152,11 +152,12 @@ void add_pulses(const CaseInput& input, const std::vector<Stage>& stages, std::v
     double begin = 0;
     for (const Stage& stage : stages) {
       if (stage.type != Stage::Type::dynamics) continue;
-      const double end = begin + stage.duration, least = begin > 0 ? begin : stage.step;  // the first step has nothing before it
-      const double round_off = 1e-6 * stage.step;
+      // a pulse lies within the steps of one stage: at its ends it comes up to a step later or earlier
+      const double end = begin + stage.step * std::max(1.0, std::round(stage.duration / stage.step));
+      const double least = begin + stage.step, most = std::max(least, end - stage.step), round_off = 1e-6 * stage.step;
       for (const FunctionBend& bend : bends_of(*function))
         if (bend.time > (begin > 0 ? begin - round_off : round_off) && bend.time < end - round_off && bend.change != 0)
-          pulses.push_back({std::max(bend.time, least), bend.change, stage.step});
+          pulses.push_back({std::clamp(bend.time, least, most), bend.change, stage.step});
       begin = end;
     }
     if (!pulses.empty()) function = with_pulses(std::move(function), std::move(pulses));

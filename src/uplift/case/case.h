@@ -19,14 +19,17 @@ namespace uplift {
 
 struct CaseMesh;   // case/mesh/mesh.h
 struct CaseInput;  // case/schema/case_input.h
+struct FreeInput {
+  void operator()(const CaseInput* input) const;
+};
 
-/// A checked case file. It can be moved; a copy would point into the values of the original.
+/// A checked case file. It is moved and never copied: the input points into the values.
 struct Case {
-  Values values;                           // of case_section()
-  std::string file;                        // as the user gave it
-  std::shared_ptr<const CaseMesh> mesh;    // opened along the interfaces; null without
-  std::vector<CaseRecord> records;         // in the order of the file
-  std::shared_ptr<const CaseInput> input;  // the values as structs
+  Values values;                                      // of case_section()
+  std::string file;                                   // as the user gave it
+  std::shared_ptr<const CaseMesh> mesh;               // opened along the interfaces; null without
+  std::vector<CaseRecord> records;                    // in the order of the file
+  std::unique_ptr<const CaseInput, FreeInput> input;  // the values as structs
 };
 
 /// Reads the mesh of a path; the place names the file, the last text is the mesh to take when there are several.

@@ -38,13 +38,18 @@ void check_factors_of_records(const Raw& raw, const Case& read) {
 
 /// The tables as structs, and between them the mesh unless it is there already.
 void fill_input(bool same_mesh, const MeshReader& read_mesh, Case& read) {
-  auto input = std::make_shared<CaseInput>(input_of_mesh(read.values));
-  read.input = input;
+  auto made = std::make_unique<CaseInput>(input_of_mesh(read.values));
+  CaseInput& input = *made;
+  read.input.reset(made.release());
   if (!same_mesh) read.mesh = mesh_of_case(read, read_mesh);
-  add_rest_of_input(read.values, read.mesh ? &read.mesh->mesh : nullptr, *input);
+  add_rest_of_input(read.values, read.mesh ? &read.mesh->mesh : nullptr, input);
 }
 
 }  // namespace
+
+void FreeInput::operator()(const CaseInput* input) const {
+  delete input;
+}
 
 Case check_case(const Raw& raw, const std::string& file, const MeshReader& read_mesh) {
   Case read{check(raw, case_section()), file, nullptr, {}, nullptr};

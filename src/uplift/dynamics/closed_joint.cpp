@@ -27,10 +27,12 @@ Vector resisting_diagonal(const Model& model, const Sparse& stiffness_matrix, co
   return diagonal;
 }
 
-/// N/m, of constraints under rigid bodies: the largest load moves them by 1e-4 of the size of the interfaces.
+/// N/m, of constraints under rigid bodies: the largest dead load moves them by 1e-4 of the size of the interfaces.
 double stiffness_under_rigid_bodies(const Model& model) {
   double largest = 0;
-  for (const Vector& pattern : model.assembly.loads) {
+  for (std::size_t k = 0; k < model.time_loads.size(); ++k) {
+    if (!model.time_loads[k].dead) continue;
+    const Vector& pattern = model.assembly.loads[k];
     double sum = 0;
     for (Index i = 0; i < pattern.size(); ++i)
       if (!model.space.is_rotation(model.space.index_of(static_cast<int>(i)))) sum += std::abs(pattern[i]);

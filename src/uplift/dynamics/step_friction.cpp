@@ -9,7 +9,7 @@
 namespace uplift {
 namespace {
 
-constexpr double still = 1e-3;  // of what is no gap: as far as contact is solved
+constexpr double still = 1e-2;  // of what is no gap: as far as contact is solved (no_gap)
 
 /// Whether a point with friction that bears no pressure before or after a step is `wanted`(row of its opening, at the end).
 template <class Wanted>

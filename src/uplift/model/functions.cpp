@@ -104,6 +104,7 @@ class Pulses final : public TimeFunction {
       sum += bend.change * std::max(0.0, 1 - std::abs(t - bend.time) / bend.half_width) / bend.half_width;
     return sum;
   }
+  double smooth_acceleration(double t) const override { return function_->smooth_acceleration(t); }
   bool is_one() const override { return function_->is_one(); }
 
  private:

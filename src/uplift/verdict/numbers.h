@@ -77,9 +77,9 @@ inline constexpr double round_off_share = 1e-9;
 /// The relative change of a number: nothing where both are below `least`. A reference below it counts as `least`.
 std::optional<double> change_of(double value, double reference, double least);
 
-/// A number as it is printed wherever it appears: rounded once, here. A residual has no more decimals than the range in which it moves.
+/// A number as it is printed wherever it appears: rounded once, here. A residual has no more decimals than its remaining variation.
 std::string text_of(const VerdictNumber&);
-/// Half of that range: "0.012 mm"; empty when it is at rest.
+/// The remaining variation (VerdictNumber::swing): "0.012 mm"; empty when it is at rest.
 std::string swing_text(const VerdictNumber&);
 
 /// The number of this name; null when there is none.

@@ -35,7 +35,7 @@ MeshReach lowest_reach(const Case& read) {
 double energy_above(const TimeFunction& function, int derivative, double duration, double frequency) {
   const double step = std::min(duration / 16, 0.05 / frequency);                              // ten samples a period of twice the frequency
   std::vector<double> values(fourier_length(2 * static_cast<std::size_t>(duration / step)));  // zeros behind it: it does not wrap around
-  for (std::size_t i = 0; 2 * i < values.size(); ++i) values[i] = derivative_of(function, derivative, step * static_cast<double>(i));
+  for (std::size_t i = 0; 2 * i < values.size(); ++i) values[i] = smooth_derivative_of(function, derivative, step * static_cast<double>(i));
   const auto transform = fourier(values);
   double all = 0, above = 0;
   for (std::size_t k = 0; k < transform.size(); ++k) {

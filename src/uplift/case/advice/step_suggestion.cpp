@@ -119,12 +119,12 @@ double unresolved_share(const TimeFunction& function, int derivative, double dur
   constexpr double most_samples = 2e5;
   const double fine = std::max({least_step, duration / most_samples, step / 1000});
   const auto count = std::max(1L, std::lround(duration / fine));
-  double difference = 0, size = 0, begin = 0, left = derivative_of(function, derivative, 0),
-         right = derivative_of(function, derivative, step);
+  double difference = 0, size = 0, begin = 0, left = smooth_derivative_of(function, derivative, 0),
+         right = smooth_derivative_of(function, derivative, step);
   for (long i = 0; i < count; ++i) {
     const double time = (static_cast<double>(i) + 0.5) * fine;
-    while (time > begin + step) begin += step, left = right, right = derivative_of(function, derivative, begin + step);
-    const double value = derivative_of(function, derivative, time), share = (time - begin) / step;
+    while (time > begin + step) begin += step, left = right, right = smooth_derivative_of(function, derivative, begin + step);
+    const double value = smooth_derivative_of(function, derivative, time), share = (time - begin) / step;
     difference += std::abs(value - (left + share * (right - left)));
     size += std::abs(value);
   }

@@ -52,6 +52,7 @@ class Scaled final : public TimeFunction {
   double value(double time) const override { return factor_ * function_->value(time); }
   double rate(double time) const override { return factor_ * function_->rate(time); }
   double acceleration(double time) const override { return factor_ * function_->acceleration(time); }
+  double smooth_acceleration(double time) const override { return factor_ * function_->smooth_acceleration(time); }
 
  private:
   double factor_;

@@ -170,7 +170,7 @@ void check_motion(const Case& read, const Values& motion) {
     fail(motion, "by", fmt::format("as many names as in replace ({})", replaced.size()), fmt::format("{}", by.size()));
   Names known("function or record");
   for (const CaseFunction& function : read.input->functions) known.add(function.name);
-  for (const CaseRecord& record : read.records) known.add(record.name, {}, {});
+  for (const Values& record : read.values.tables("record")) known.add(record, "name");
   std::vector<std::string> drives;
   for (const DrivenBy& place : motions_wanted(read)) drives.push_back(place.function.name);
   for (std::size_t i = 0; i < by.size(); ++i) {

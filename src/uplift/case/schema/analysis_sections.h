@@ -24,14 +24,14 @@ CaseStage case_stage(const Values&);
 
 const Section& energy_section();
 struct CaseEnergy {
-  double created_limit = 0;
+  double created_limit;
   bool stop_at_limit = false;
 };
 CaseEnergy case_energy(const Values&);
 
 const Section& limits_section();
 struct CaseLimits {
-  double rotation = 0;                              // rad
+  double rotation;                                  // rad
   std::optional<double> separation, gap_tolerance;  // m
 };
 CaseLimits case_limits(const Values&);

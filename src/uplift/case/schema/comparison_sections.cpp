@@ -83,14 +83,15 @@ CaseVariant case_variant(const Values& table) {
 }
 
 const Section& compare_section() {
-  static const Section s{
-      "compare", "how variants are compared",
-      Fields{
-          number("band", "1", "runs that passed all checks agree when they differ from their median by less").positive().standard(0.02),
-          texts("agree_on", "columns whose peaks are compared; absent: every number of the verdict").optional(),
-          tables("damping", damping_case_section(), "every variant is run with each of these"),
-          tables("motion", compare_motion_section(), "further motions: every variant is run with each of these and with that of the case"),
-          table("stiffness_sweep", sweep_section(), "a table of energy error against stiffness").optional()}};
+  static const Section s{"compare", "how variants are compared",
+                         Fields{number("band", "1", "runs that passed all checks agree when they differ from their median by less")
+                                    .positive()
+                                    .standard(agreement_band),
+                                texts("agree_on", "columns whose peaks are compared; absent: every number of the verdict").optional(),
+                                tables("damping", damping_case_section(), "every variant is run with each of these"),
+                                tables("motion", compare_motion_section(),
+                                       "further motions: every variant is run with each of these and with that of the case"),
+                                table("stiffness_sweep", sweep_section(), "a table of energy error against stiffness").optional()}};
   return s;
 }
 

@@ -33,9 +33,11 @@ struct CaseSweep : CaseTable {
   std::optional<double> duration;  // s
 };
 
+inline constexpr double agreement_band = 0.02;  // difference from the median, relative
+
 const Section& compare_section();
 struct CaseComparison {
-  double band = 0.02;
+  double band = agreement_band;
   std::vector<NameUsed> agree_on;
   std::vector<CaseNamed> dampings, motions;
   std::optional<CaseSweep> sweep;
@@ -46,7 +48,7 @@ const Section& trust_section();
 struct CaseTrust {
   std::optional<double> stiffness_factor;
   int interior = 0;
-  double mesh_factor = 1, mesh_shift = 0, spectrum_band = 0.1;
+  double mesh_factor, mesh_shift, spectrum_band;
 };
 CaseTrust case_trust(const Values&);
 

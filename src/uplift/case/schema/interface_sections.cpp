@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+
 #include "uplift/case/build/profile.h"
 
 namespace uplift {
@@ -181,18 +184,17 @@ const Section& interface_section() {
 CaseInterface case_interface(const Values& table) {
   CaseInterface made{{&table}, name_used(table, "name"), {}, table.is_word("gap"), 0, table_if(table, "gap_profile"), {},
                      {},       &table.part("law")};
-  int kinds = 0;
+  const auto kinds =
+      std::ranges::count_if(std::array{"footing", "pairs", "line", "surface", "cut"}, [&](const char* key) { return table.has(key); });
+  if (kinds != 1) fail(table, "", "exactly one of footing, pairs, line, surface and cut", kinds == 0 ? "none" : fmt::format("{}", kinds));
   const auto take = [&](const char* key, auto read) {
-    if (!table.has(key)) return;
-    made.place = read(table.table(key));
-    ++kinds;
+    if (table.has(key)) made.place = read(table.table(key));
   };
   take("footing", case_footing);
   take("pairs", case_pairs);
   take("line", case_line);
   take("surface", case_surface);
   take("cut", case_cut);
-  if (kinds != 1) fail(table, "", "exactly one of footing, pairs, line, surface and cut", kinds == 0 ? "none" : fmt::format("{}", kinds));
   if (!made.gap_of_geometry) made.gap = table.number("gap");
   if (const Values* water = table_if(table, "water")) made.water = case_water(*water);
   if (table.has("role")) made.role = table.text("role") == "base" ? Role::base : Role::wall;

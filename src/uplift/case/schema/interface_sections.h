@@ -15,8 +15,8 @@ struct CaseBed : CaseTable {
 };
 struct CaseFooting : CaseTable {
   NameUsed body;
-  double width, thickness;  // m
-  std::optional<double> length;
+  double width, thickness;       // m
+  std::optional<double> length;  // m
   int points;
   std::optional<int> points_across;
   double azimuth;  // rad
@@ -62,8 +62,8 @@ const Section& foundation_section();
 struct CaseFoundation : CaseTable {
   NameUsed name, body;
   Footprint::Shape shape;
-  double width;  // m
-  std::optional<double> length;
+  double width;                  // m
+  std::optional<double> length;  // m
   std::optional<VectorUsed> offset;
   const Values* soil;  // null: none
   bool radiates;

@@ -25,9 +25,10 @@ struct CaseEnvelope : CaseTable {
 
 struct CaseFloor : NodeAsked {
   NameUsed name;
-  Vec3 direction;  // of length 1
-  std::vector<double> dampings, frequencies;
-  double broadening;
+  Vec3 direction;                   // of length 1
+  std::vector<double> dampings;     // ratios
+  std::vector<double> frequencies;  // Hz
+  double broadening;                // share of the frequency to either side
 };
 
 struct CaseFields : CaseTable {

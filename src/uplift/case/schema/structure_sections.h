@@ -81,11 +81,11 @@ const Section& load_section();
 /// On a node a force or a moment, on a group exactly one of force, traction and pressure.
 struct CaseLoad : CaseTable {
   NodeOrGroup of;
-  std::string name;              // as stated, else from what it acts on
-  std::optional<Vec3> force;     // N
-  std::optional<Vec3> traction;  // Pa
-  std::optional<double> pressure;
-  Vec3 moment;  // N m about the axes
+  std::string name;                // as stated, else from what it acts on
+  std::optional<Vec3> force;       // N
+  std::optional<Vec3> traction;    // Pa
+  std::optional<double> pressure;  // Pa
+  Vec3 moment;                     // N m about the axes
   std::optional<Profile> profile;
   std::optional<NameUsed> function;
 };

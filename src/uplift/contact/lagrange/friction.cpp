@@ -76,7 +76,7 @@ class Frictional final : public MethodWork {
     const Outcome before = outcome_;
     if ((settle(most, false) || settle(most, true)) && confirmed()) {
       const double moved = (found_.opening - problem_->free_opening).cwiseAbs().maxCoeff();
-      if ((found_.opening - solution_->opening).cwiseAbs().maxCoeff() <= same * moved) return;
+      if ((found_.opening - solution_->opening).cwiseAbs().maxCoeff() <= same * moved + options_->gap_of(*problem_->model)) return;
     }
     *solution_ = found_, outcome_ = before;
   }
@@ -168,10 +168,14 @@ class Frictional final : public MethodWork {
     return fail(unsettled());
   }
 
-  /// Forces of redundant points may wander for ever while everything else stands still.
+  /// Forces of redundant points may wander for ever while everything else stands still. In a short step of a body that has slid far the
+  /// round-off of its slip is what the residual cannot fall below.
   bool found_by_augmentation() {
+    constexpr double round_off = 64 * std::numeric_limits<double>::epsilon();
+    const double slip = (solution_->opening - problem_->from).cwiseAbs().maxCoeff();
+    const double noise = slip > 0 ? round_off * solution_->opening.cwiseAbs().maxCoeff() / slip : 0;
     outcome_.residual = contact_residual(*problem_, *solution_, residual_);
-    return outcome_.residual <= 1e-9;
+    return outcome_.residual <= 1e-9 + noise;
   }
 
   /// In statics a loose body has no equilibrium: the balance, which is relative, is then met at infinity.

@@ -175,7 +175,8 @@ const Entry<ContactMethod>& entry_method_lagrange() {
                  "Curnier (1991)",
        .params =
            {number("gap_tolerance", "m",
-                   "a point is closed only when it would penetrate by more than this; absent: 1e-12 of the size of the interfaces")
+                   "a point is closed only when it would penetrate by more than this; absent: 1e-12 of the size of the interfaces, or "
+                   "`tolerance` of it where that is smaller")
                 .positive()
                 .optional(),
             number("tolerance", "1", "balance residual beside traction laws, relative to the interface force").positive().standard(1e-12),

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,8 +17,8 @@ struct LagrangeOptions {
   std::optional<double> gap_tolerance;  // m: a point is closed only below minus this, and stays open when it just touches
   double tolerance = 1e-12;             // balance residual, relative
   int most_iterations = 100;
-  /// m: gap_tolerance, or 1e-12 of the size of the interfaces.
-  double gap_of(const ContactModel& model) const { return gap_tolerance.value_or(no_gap * model.size); }
+  /// m: gap_tolerance; absent: 1e-12 of the size of the interfaces, or less with a smaller tolerance.
+  double gap_of(const ContactModel& model) const { return gap_tolerance.value_or(std::min(tolerance, no_gap) * model.size); }
 };
 
 /// Frictionless cones with traction laws and the statics' shift beside them: minimises
