@@ -67,7 +67,7 @@ def lagrange(
 
     Parameters:
         gap_tolerance: a point is closed only when it would penetrate by more than this; absent: 1e-12 of the size
-            of the interfaces [m], > 0 m.
+            of the interfaces, or `tolerance` of it where that is smaller [m], > 0 m.
         tolerance: balance residual beside traction laws, relative to the interface force, > 0; default 1e-12.
         most_iterations: iterations before the fallback, from 1 to 10000; default 100.
     """

@@ -48,7 +48,7 @@ Planned planned(const std::string& text) {
 Case changed(const Planned& planned, const std::string& name) {
   const auto found = std::ranges::find(planned.plan.changes, name, &TrustChange::name);
   EXPECT_NE(found, planned.plan.changes.end()) << name;
-  return found == planned.plan.changes.end() ? planned.read : check_case(edited(planned.raw, found->edits), "case.toml");
+  return check_case(found == planned.plan.changes.end() ? planned.raw : edited(planned.raw, found->edits), "case.toml");
 }
 
 std::string reason(const Planned& planned, const std::string& choice) {

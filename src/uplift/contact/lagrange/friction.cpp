@@ -171,9 +171,9 @@ class Frictional final : public MethodWork {
   /// Forces of redundant points may wander for ever while everything else stands still. In a short step of a body that has slid far the
   /// round-off of its slip is what the residual cannot fall below.
   bool found_by_augmentation() {
-    constexpr double round_off = 64 * std::numeric_limits<double>::epsilon();
+    constexpr double round_off = 64 * std::numeric_limits<double>::epsilon(), most = 1e-6;
     const double slip = (solution_->opening - problem_->from).cwiseAbs().maxCoeff();
-    const double noise = slip > 0 ? round_off * solution_->opening.cwiseAbs().maxCoeff() / slip : 0;
+    const double noise = slip > 0 ? std::min(most, round_off * solution_->opening.cwiseAbs().maxCoeff() / slip) : 0;
     outcome_.residual = contact_residual(*problem_, *solution_, residual_);
     return outcome_.residual <= 1e-9 + noise;
   }
