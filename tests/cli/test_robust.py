@@ -368,7 +368,8 @@ class Places(RobustTest):
         bare = BASE[:BASE.index("[[stage]]")]
         self.refused(bare, "{file}: expected at least one [[stage]], found none")
         loose = BASE[:BASE.index("[[rigid]]")] + BASE[BASE.index("[[load]]"):]
-        self.refused(loose, '{file}: expected a structure that its supports hold, found a mechanism: "top", "base" can move '
+        top = next(number for number, line in enumerate(loose.splitlines(), 1) if line.startswith("top ="))
+        self.refused(loose, f'{{file}}:{top}: expected a structure that its supports hold, found a mechanism: "top", "base" can move '
                      "along (1, 0) without resistance")
         sweep = BASE.replace('type = "dynamic"', 'type = "dynamic"\nscheme = { type = "generalised_alpha", rho = 0.8 }') + (
             SPRINGS.format("a", "2e8") + '[compare.stiffness_sweep]\nlaw = { type = "springs", K_n = 2e8 }\nratios = [1]\n')

@@ -119,6 +119,14 @@ void add_method(const Case& read, const RunSpec& spec, BuiltCase& built) {
   built.plan.impact = make_part(impact_catalog(), impact ? *impact : standard);
 }
 
+/// Where a node of the case is given; of a node of the mesh the file.
+std::function<Where(const std::string&)> places_of_nodes(const Case& read) {
+  return [&read](const std::string& name) {
+    const auto found = std::ranges::find(read.input->nodes, name, &CaseNode::name);
+    return found == read.input->nodes.end() ? read.values.where() : found->where();
+  };
+}
+
 /// The mass that a tuned point mass gets: that of the structure without it, see tuned_mass.
 std::vector<double> tuned_masses(const Case& read, const RunSpec& spec) {
   const CaseMass* tuned = nullptr;
@@ -138,7 +146,7 @@ std::vector<double> tuned_masses(const Case& read, const RunSpec& spec) {
   add_structure(read, builder, names, {0.0}, true);
   add_interfaces(read, spec, nullptr, builder, names, without);
   const Model model = builder.finish();
-  check_static(model, read.values.where());  // a loose body is named as such, not as a mass that cannot be tuned
+  check_static(model, places_of_nodes(read));  // a loose body is named as such, not as a mass that cannot be tuned
   return {tuned_mass(model, names.node(tuned->node), tuned->tuned_frequency, tuned->where("tuned_frequency"))};
 }
 
@@ -253,12 +261,12 @@ void adapt_laws(const Case& read, const RunSpec& spec, BuiltCase& built) {
 }
 
 /// A base of width B that turns by the limit theta opens by B theta at its toe: as far, everywhere, the displacement is no smaller beside
-/// the structure than there. No gap is what is 1e-10 of its size, in all units of length alike.
+/// the structure than there. No gap is a share of its size, in all units of length alike.
 void set_limits(const CaseLimits& limits, const Model& model, RunPlan& plan) {
   const double size = base_size(model);
   plan.rotation_limit = limits.rotation;
   plan.separation_limit = limits.separation.value_or(limits.rotation * size);
-  plan.gap_tolerance = limits.gap_tolerance.value_or(size > 0 ? 1e-10 * size : 1e-9);
+  plan.gap_tolerance = limits.gap_tolerance.value_or(size > 0 ? closed_share * size : 1e-9);
 }
 
 /// Tells of interfaces that were divided by their normals.
@@ -334,7 +342,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
   move_model(make_model(read, spec, tuned, nullptr, names, built), built.model);
   const bool released = any_released(*read.input);
   const bool rests = std::ranges::any_of(built.plan.stages, [](const Stage& stage) { return stage.type == Stage::Type::statics; });
-  if (!released && rests) check_static(built.model, root.where());
+  if (!released && rests) check_static(built.model, places_of_nodes(read));
   if (dynamic_stage(built.plan)) check_dynamic(built.model, root.where());
   built.motions = motions_used(read, spec.motion, spec.motion_factor);
 
@@ -347,7 +355,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
   if (released) {
     check_release(read.input->stages, plan.stages);
     plan.rest = resting_model(read, spec, tuned, built);
-    check_static(*plan.rest, root.where());
+    check_static(*plan.rest, places_of_nodes(read));
   }
   add_method(read, spec, built);
   if (const Stage* stage = dynamic_stage(plan);

@@ -55,7 +55,7 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
   // Two factors are kept: the one of the step, which needs the most room while it is made, comes first. One that is needed for the
   // acceleration of the beginning alone comes and goes before it (start).
   if (path_ || impacts_) level(0);
-  if (const double size = b.rows() > 0 ? base_size(model) : 0; size > 0) closed_gap_ = 1e-10 * size;
+  if (const double size = b.rows() > 0 ? base_size(model) : 0; size > 0) closed_gap_ = closed_share * size;
   if (impacts_) {
     prepare_impacts();
     impact_impulse_.setZero(b.rows());

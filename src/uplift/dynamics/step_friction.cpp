@@ -3,13 +3,14 @@
 
 #include "uplift/contact/impact/projection.h"
 #include "uplift/dynamics/step_level.h"
+#include "uplift/model/base_size.h"
 
 // Impacts of points with friction (docs/theory, section 5): the impulse of friction belongs to the projected normal impulse, not to the
 // multiplier of the displacement solve, and the force at the beginning of a step does no work on a point that it no longer holds.
 namespace uplift {
 namespace {
 
-constexpr double still = 1e-2;  // of what is no gap: as far as contact is solved (no_gap)
+constexpr double still = no_gap / closed_share;  // of closed_gap_: as far as contact is solved
 
 /// Whether a point with friction that bears no pressure before or after a step is `wanted`(row of its opening, at the end).
 template <class Wanted>

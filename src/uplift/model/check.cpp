@@ -117,8 +117,9 @@ std::string describe_motion(const Model& model, const Vector& motion) {
 
 namespace {
 
-Where place_of(const Model& model, const Where& file) {
-  return model.assembly.interface_where.empty() ? file : model.assembly.interface_where.front();
+/// Of the first interface; without: `other`.
+Where place_of_interface(const Model& model, const Where& other) {
+  return model.assembly.interface_where.empty() ? other : model.assembly.interface_where.front();
 }
 
 /// Groups of unknowns that the matrix couples.
@@ -142,13 +143,19 @@ std::string loose_part(const Model& model, Resistance resistance) {
   return motion.size() == 0 ? std::string() : describe_motion(model, motion);
 }
 
-void check_static(const Model& model, const Where& file) {
-  const std::string loose = loose_part(model, Resistance::stiffness);
-  if (loose.empty()) return;
+void check_static(const Model& model, const std::function<Where(const std::string& node)>& place_of) {
+  const Vector motion = unresisted_motion(model, Resistance::stiffness);
+  if (motion.size() == 0) return;
+  const std::string loose = describe_motion(model, motion);
+  const std::vector<Vec3> moved = motions_of(model, model.reduction * motion).translation;
+  double largest = 0;
+  for (const Vec3& each : moved) largest = std::max(largest, each.norm());
+  const auto first = std::ranges::find_if(moved, [&](const Vec3& each) { return each.norm() >= 0.5 * largest; });
+  const Where node = place_of ? place_of(model.nodes[static_cast<std::size_t>(first - moved.begin())].name) : Where();
   const std::vector<int> hinged = hinges(model);
   const char* wanted =
       model.interfaces.empty() ? "a structure that its supports hold" : "a structure that stands when all its interfaces are closed";
-  throw InputError(place_of(model, file), "", wanted,
+  throw InputError(place_of_interface(model, node), "", wanted,
                    fmt::format("a mechanism: {} without resistance{}", loose,
                                hinged.empty() ? "" : "; beams end in hinges of solids: " + named_places(model, hinged)));
 }
@@ -195,7 +202,7 @@ void check_masses(const Model& model, const Where& file) {
     for (std::size_t i = 0; i < others.size(); ++i)
       if (block[i] == block[broken] && members.size() < 6) members.push_back(model.unknown_name(others[i]));
     throw InputError(
-        place_of(model, file), "mass", "a mass matrix that is regular where it is not zero",
+        place_of_interface(model, file), "mass", "a mass matrix that is regular where it is not zero",
         fmt::format(
             "zero mass where mass is needed: a motion of {} without kinetic energy (a point mass off its node needs an inertia > 0)",
             fmt::join(members, ", ")));
@@ -214,7 +221,7 @@ void check_dynamic(const Model& model, const Where& file) {
   check_masses(model, file);
   const Vector unresisted = unresisted_motion(model, Resistance::dynamic);
   if (unresisted.size() > 0)
-    throw InputError(place_of(model, file), "", "a stiffness, a mass, a dashpot or an interface against every motion",
+    throw InputError(place_of_interface(model, file), "", "a stiffness, a mass, a dashpot or an interface against every motion",
                      describe_motion(model, unresisted) + " without any of them");
 }
 

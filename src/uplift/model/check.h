@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <string>
 
 #include "uplift/base/error.h"
@@ -17,8 +18,8 @@ void check_dynamic(const Model& model, const Where& file = {});
 void check_impulses(const Model& model);
 
 /// Throws InputError when the structure is loose although all interfaces are closed (see unresisted_motion): it has no static equilibrium.
-/// Names the loose nodes and how they can move.
-void check_static(const Model& model, const Where& file = {});
+/// Names the loose nodes and how they can move. `place_of`: of a node by its name, for a model without interfaces.
+void check_static(const Model& model, const std::function<Where(const std::string& node)>& place_of = {});
 
 /// How the model can move without resistance with its interfaces closed, in words ("\"top\", \"base\" can move along (1, 0)"); empty when
 /// it cannot.
