@@ -189,11 +189,10 @@ Model make_model(const Case& read, const RunSpec& spec, const std::vector<double
   add_ties(*read.input, builder, names);
   add_faces(read, builder, names);
   if (!dynamic)
-    add_free_field(*read.input, built.plan.stages, spec.damping ? bulk_damping(*spec.damping) : BulkDamping{}, bulk_solver(read), builder,
-                   names);
+    add_free_field(*read.input, built.plan.stages, spec.damping ? spec.damping->made : BulkDamping{}, bulk_solver(read), builder, names);
   add_interfaces(read, spec, dynamic, builder, names, built);
   add_loads(*read.input, builder, names);
-  if (spec.damping) builder.set_damping(bulk_damping(*spec.damping));
+  if (spec.damping) builder.set_damping(spec.damping->made);
   built.beams = names.beams;
   builder.set_home(home_of(*bulk_solver(read)));
   return builder.finish();
@@ -374,7 +373,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
   add_requests(read, names, built);
   add_combined(built);
   if (!spec.stiffness_ratio) add_floors(read, built);
-  built.verdict_request = verdict_request(root, built);
+  built.verdict_request = verdict_request(read.input->verdict, built);
   plan.window = built.verdict_request.window;
   if (read.input->compare) check_columns(read.input->compare->agree_on, plan.requests);
   check_history_memory(read, built);

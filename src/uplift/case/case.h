@@ -17,8 +17,9 @@
 // From the checked case file to something that can be run.
 namespace uplift {
 
-struct CaseMesh;   // case/mesh/mesh.h
-struct CaseInput;  // case/schema/case_input.h
+struct CaseMesh;     // case/mesh/mesh.h
+struct CaseDamping;  // case/schema/analysis_sections.h
+struct CaseInput;    // case/schema/case_input.h
 struct FreeInput {
   void operator()(const CaseInput* input) const;
 };
@@ -44,7 +45,7 @@ Case check_case_like(const Case& like, bool same_mesh, const Raw& raw, const Mes
 /// Other files that the case reads (tables of functions, the mesh, records), as paths that can be opened from here.
 std::vector<std::string> input_files(const Case&);
 
-/// One run of a case: what differs from the case as it stands. Null and empty: as in the case. Points into the case's values.
+/// One run of a case: what differs from the case as it stands. Null and empty: as in the case. Points into the case's values and input.
 struct RunSpec {
   std::string name, label, group;
   std::string other_case;       // file of the case that is run; empty: this one
@@ -53,17 +54,17 @@ struct RunSpec {
   const Values* method = nullptr;
   const Values* impact = nullptr;
   const Values* scheme = nullptr;
-  const Values* damping = nullptr;
+  const CaseDamping* damping = nullptr;
   std::optional<bool> path_average;
-  std::optional<double> step, duration;   // s, of the dynamic stages
-  double step_factor = 1;                 // of the steps of the dynamic stages
-  std::optional<double> stiffness_ratio;  // the law's stiffness is chosen so that the largest k F_ii is this
-  std::string stiffness_parameter;        // parameter of the law that is the stiffness
-  const Values* motion = nullptr;         // [[compare.motion]]: records that take the place of others; null: the case's own
-  double motion_factor = 1;               // of everything that moves the ground: records and functions
-  std::string motion_label;               // of a comparison over motions; empty: none
-  bool bonded = false;                    // elastic interfaces that never open, as stiff as the closed joint
-  bool rigid_ground = false;              // elastic beds are left out
+  std::optional<double> step, duration;     // s, of the dynamic stages
+  double step_factor = 1;                   // of the steps of the dynamic stages
+  std::optional<double> stiffness_ratio;    // the law's stiffness is chosen so that the largest k F_ii is this
+  std::string stiffness_parameter;          // parameter of the law that is the stiffness
+  const CaseOtherMotion* motion = nullptr;  // [[compare.motion]]: records that take the place of others; null: the case's own
+  double motion_factor = 1;                 // of everything that moves the ground: records and functions
+  std::string motion_label;                 // of a comparison over motions; empty: none
+  bool bonded = false;                      // elastic interfaces that never open, as stiff as the closed joint
+  bool rigid_ground = false;                // elastic beds are left out
   bool expected_to_fail = false;
   bool pictures = true;  // keep frames for the animation
 };

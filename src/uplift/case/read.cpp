@@ -54,7 +54,7 @@ void FreeInput::operator()(const CaseInput* input) const {
 Case check_case(const Raw& raw, const std::string& file, const MeshReader& read_mesh) {
   Case read{check(raw, case_section()), file, nullptr, {}, nullptr};
   fill_input(false, read_mesh, read);
-  read.records = read_records(read.values);
+  read.records = read_records(read.input->records);
   check_factors_of_records(raw, read);
   return read;
 }
@@ -85,8 +85,8 @@ std::vector<std::string> input_files(const Case& read) {
       }
   if (const std::optional<std::string>& file = read.input->reduced_model)
     files.push_back(path_beside(read.values.where("reduced_model"), *file).lexically_normal().string());
-  for (const Values& record : read.values.tables("record"))
-    if (record.has("file")) files.push_back(record_path(record));
+  for (const CaseRecordSource& record : read.input->records)
+    if (record.file) files.push_back(record.location);
   for (const CaseVariant& variant : read.input->variants)
     if (variant.other_case) {
       const std::filesystem::path path = path_beside(variant.other_case->where(), variant.other_case->name);
@@ -96,7 +96,7 @@ std::vector<std::string> input_files(const Case& read) {
 }
 
 std::shared_ptr<const LinearSolver> bulk_solver(const Case& read) {
-  return make_part(solver_catalog(), read.values.part("solver"));
+  return make_part(solver_catalog(), *read.input->solver);
 }
 
 }  // namespace uplift

@@ -20,7 +20,7 @@ bool may_open(const CaseInput& input) {
 
 RunSpec base_run(const Case& read) {
   RunSpec spec;
-  spec.damping = read.input->damping;
+  if (read.input->damping) spec.damping = &*read.input->damping;
   return spec;
 }
 
@@ -67,7 +67,7 @@ void check_file_name(const NameUsed& used) {
       fail(used, "letters, digits, '_', '-' and '.' (it names files; `label` may be anything)", "\"" + used.name + "\"");
 }
 
-std::vector<RunSpec> sweep_runs(const Case& read, const CaseSweep& sweep, const Values* damping) {
+std::vector<RunSpec> sweep_runs(const Case& read, const CaseSweep& sweep, const CaseDamping* damping) {
   std::vector<RunSpec> runs;
   for (const double ratio : sweep.ratios) {
     if (!(ratio > 0)) fail(sweep, "ratios", "ratios > 0", fmt::format("{}", ratio));
@@ -92,18 +92,19 @@ std::vector<RunSpec> sweep_runs(const Case& read, const CaseSweep& sweep, const 
 }
 
 /// Every run with every one of some tables; pictures of the first alone.
-std::vector<RunSpec> with_each(const std::vector<RunSpec>& plain, const std::vector<CaseNamed>& tables, const std::string& what,
-                               const Values* RunSpec::*place) {
+template <class Table>
+std::vector<RunSpec> with_each(const std::vector<RunSpec>& plain, const std::vector<Table>& tables, const std::string& what,
+                               const Table* RunSpec::*place) {
   if (tables.empty()) return plain;
   std::vector<RunSpec> made;
   Names known(what);
-  for (const CaseNamed& table : tables) {
+  for (const Table& table : tables) {
     check_file_name(table.name);
     known.add(table.name);
     for (RunSpec spec : plain) {
       spec.name += "-" + table.name.name;
       spec.group = spec.group.empty() ? table.label : spec.group + ", " + table.label;
-      spec.*place = table.table;
+      spec.*place = &table;
       spec.pictures = spec.pictures && &table == &tables.front();
       made.push_back(std::move(spec));
     }
@@ -111,32 +112,26 @@ std::vector<RunSpec> with_each(const std::vector<RunSpec>& plain, const std::vec
   return made;
 }
 
-/// Whether a [[compare.motion]] stands for the case's own records: every name is replaced by itself.
-bool is_own_motion(const CaseNamed& motion) {
-  return motion.table->texts("replace") == motion.table->texts("by");
-}
-
 /// Every run under the case's own motion and under every further one. The own motion is left out where a [[compare.motion]] names it.
-std::vector<RunSpec> with_motions(const std::vector<RunSpec>& plain, const std::vector<CaseNamed>& motions) {
+std::vector<RunSpec> with_motions(const std::vector<RunSpec>& plain, const std::vector<CaseOtherMotion>& motions) {
   if (motions.empty()) return plain;
   std::vector<RunSpec> made;
-  const bool named = std::ranges::any_of(motions, is_own_motion);
+  const bool named = std::ranges::any_of(motions, &CaseOtherMotion::is_own);
   for (RunSpec spec : plain)
     if (!named) {
       spec.group = spec.motion_label = "motion of the case";
       made.push_back(std::move(spec));
     }
   for (RunSpec spec : with_each(plain, motions, "motion of the comparison", &RunSpec::motion)) {
-    spec.motion_label = std::ranges::find(motions, spec.motion, &CaseNamed::table)->label;
+    spec.motion_label = spec.motion->label;
     spec.pictures = spec.pictures && named;
     made.push_back(std::move(spec));
   }
   return made;
 }
 
-bool undamped(const CaseNamed& damping) {
-  const BulkDamping made = bulk_damping(*damping.table);
-  return made.alpha == 0 && made.beta == 0 && made.modal.empty();
+bool undamped(const CaseDamping& damping) {
+  return damping.made.alpha == 0 && damping.made.beta == 0 && damping.made.modal.empty();
 }
 
 }  // namespace
@@ -157,7 +152,7 @@ std::vector<RunSpec> companions_of_case(const Case& read) {
     long_enough = *stage.duration >= least_steps_to_compare * *stage.step;
     if (!long_enough) break;
   }
-  if (!read.input->step_check || !long_enough) return {};
+  if (!read.input->verdict.step_check || !long_enough) return {};
   std::vector<RunSpec> runs = runs_of_case(read);
   for (RunSpec& spec : runs) {
     spec.name += "-coarse";
@@ -191,16 +186,14 @@ Comparison comparison_of_case(const Case& read) {
   const std::optional<CaseComparison>& compare = read.input->compare;
   made.runs = plain;
   if (compare) {
-    for (const CaseNamed& motion : compare->motions) check_motion(read, *motion.table);
+    for (const CaseOtherMotion& motion : compare->motions) check_motion(read, motion);
     made.runs = with_motions(made.runs, compare->motions);
     made.runs = with_each(made.runs, compare->dampings, "damping case", &RunSpec::damping);
   }
   if (compare && compare->sweep) {
     // Without damping the error cannot hide; the first undamped case is taken when there is one.
-    const Values* damping = nullptr;
-    for (const CaseNamed& each : compare->dampings)
-      if (!damping && undamped(each)) damping = each.table;
-    made.sweep = sweep_runs(read, *compare->sweep, damping);
+    const auto damping = std::ranges::find_if(compare->dampings, undamped);
+    made.sweep = sweep_runs(read, *compare->sweep, damping == compare->dampings.end() ? nullptr : &*damping);
   }
   return made;
 }

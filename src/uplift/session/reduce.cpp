@@ -167,9 +167,9 @@ void take_floors(const ControlRun& full, const ControlRun& reduced, double highe
 ControlErrors control_errors(const LoadedCase& loaded, const ReducedModel& reduced, const ReduceOptions& options, const Control& control) {
   RunSpec own = runs_of_case(loaded.read).front();
   own.pictures = false;
-  std::vector<const Values*> motions{nullptr};
+  std::vector<const CaseOtherMotion*> motions{nullptr};
   if (const std::optional<CaseComparison>& compare = loaded.read.input->compare)
-    for (const CaseNamed& motion : compare->motions) motions.push_back(motion.table);
+    for (const CaseOtherMotion& motion : compare->motions) motions.push_back(&motion);
   ControlErrors errors;
   errors.runs = options.controls;
   errors.least_scale = options.least_scale, errors.most_scale = options.most_scale;

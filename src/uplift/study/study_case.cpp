@@ -25,14 +25,14 @@ namespace {
 // ---- motions ----
 
 /// The record whose intensity is that of the motion; null where a function drives.
-const CaseRecord* measured_record(const StudyCase& study, const Values* table, const Values& place) {
+const CaseRecord* measured_record(const StudyCase& study, const CaseOtherMotion* given, const Values& place) {
   std::vector<std::string> driving;
   for (const DrivenBy& each : motions_wanted(study.read)) driving.push_back(each.function.name);
   std::string name = study.plan.intensity.of;
-  if (name.empty()) name = table ? table->texts("replace").front() : driving.empty() ? "" : driving.front();
+  if (name.empty()) name = given ? given->replace.front() : driving.empty() ? "" : driving.front();
   if (std::ranges::find(driving, name) == driving.end())
     fail(place, "of", "the name of a record or function that drives the case", in_quotes(name), nearest_name(name, driving));
-  const auto found = std::ranges::find(study.read.records, name_taken(table, name), &CaseRecord::name);
+  const auto found = std::ranges::find(study.read.records, name_taken(given, name), &CaseRecord::name);
   return found == study.read.records.end() ? nullptr : &*found;
 }
 
@@ -61,25 +61,25 @@ std::string bytes_of(const Motion& motion) {
 }
 
 /// Of everything that takes a place, in the order of the plan.
-std::string motion_hash(const StudyCase& study, const Values* table) {
-  if (!table) return sha256("the motion of the case");
+std::string motion_hash(const StudyCase& study, const CaseOtherMotion* given) {
+  if (!given) return sha256("the motion of the case");
   std::string text;
-  for (std::size_t i = 0; i < table->texts("replace").size(); ++i) {
-    const std::string& by = table->texts("by")[i];
+  for (std::size_t i = 0; i < given->replace.size(); ++i) {
+    const std::string& by = given->by[i];
     const auto record = std::ranges::find(study.read.records, by, &CaseRecord::name);
-    text += table->texts("replace")[i] + "\n" + (record == study.read.records.end() ? by : sha256(bytes_of(record->motion()))) + "\n";
+    text += given->replace[i] + "\n" + (record == study.read.records.end() ? by : sha256(bytes_of(record->motion()))) + "\n";
   }
   return sha256(text);
 }
 
-StudyMotion motion_of(const StudyCase& study, const Values* table) {
+StudyMotion motion_of(const StudyCase& study, const CaseOtherMotion* given) {
   StudyMotion motion;
-  motion.table = table;
-  motion.name = table ? table->text("name") : "own";
-  motion.label = !table ? "motion of the case" : table->has("label") ? table->text("label") : motion.name;
-  motion.hash = motion_hash(study, table);
+  motion.given = given;
+  motion.name = given ? given->name.name : "own";
+  motion.label = given ? given->label : "motion of the case";
+  motion.hash = motion_hash(study, given);
   const Values& place = study.plan.values.table("intensity");
-  const CaseRecord* record = measured_record(study, table, place);
+  const CaseRecord* record = measured_record(study, given, place);
   if (!record) {
     if (study.plan.intensity.kind != IntensityMeasure::Kind::factor)
       fail(place, "measure", "\"factor\" for a motion that is a function, or a record in its place", in_quotes(place.text("measure")));
@@ -234,10 +234,9 @@ StudyCase study_case(const StudyPlan& plan, const Raw& case_raw, const MeshReade
   check_limits(study);
   Names names("motion");
   if (const std::optional<CaseComparison>& compare = study.read.input->compare)
-    for (const CaseNamed& each : compare->motions) {
-      const Values& motion = *each.table;
-      names.add(each.name);
-      if (motion.texts("replace").empty()) fail(motion, "replace", "one name at least", "none");
+    for (const CaseOtherMotion& motion : compare->motions) {
+      names.add(motion.name);
+      if (motion.replace.empty()) fail(motion, "replace", "one name at least", "none");
       check_motion(study.read, motion);
       study.motions.push_back(motion_of(study, &motion));
       for (std::size_t k = 0; k + 1 < study.motions.size(); ++k)
@@ -256,16 +255,16 @@ RunSpec run_of_study(const StudyCase& study, const Case& sample, std::size_t mot
   RunSpec spec = runs_of_case(sample).front();
   spec.pictures = false;
   spec.motion_factor = factor;
-  if (const Values* table = study.motions[motion].table) {
-    const std::vector<CaseNamed>& motions = sample.input->compare->motions;
-    spec.motion = std::ranges::find(motions, table->text("name"), [](const CaseNamed& each) { return each.name.name; })->table;
+  if (const CaseOtherMotion* given = study.motions[motion].given) {
+    const std::vector<CaseOtherMotion>& motions = sample.input->compare->motions;
+    spec.motion = &*std::ranges::find(motions, given->name.name, [](const CaseOtherMotion& each) { return each.name.name; });
   }
   return spec;
 }
 
 std::string resolved_run(const StudyCase& study, std::size_t sample, std::size_t motion, double factor) {
   const Raw changed = edited(study.raw, study.samples[sample].edits);
-  const Raw made = with_one_motion(changed, study.read, study.motions[motion].table, factor);
+  const Raw made = with_one_motion(changed, study.read, study.motions[motion].given, factor);
   const Case read = check_case_like(study.read, true, made, study.read_mesh);
   return to_toml(read.values, decided_texts(read));
 }

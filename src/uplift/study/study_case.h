@@ -12,12 +12,12 @@ namespace uplift {
 /// One motion of a study.
 struct StudyMotion {
   std::string name, label;
-  const Values* table = nullptr;  // [[compare.motion]] of the case; null: the case's own
-  std::string hash;               // SHA-256 of what is put in place of what
-  double intensity = 1;           // at the factor 1, in the plan's unit
-  std::string record;             // whose intensity it is; empty: not a record
-  double step = 0, duration = 0;  // s, of that record
-  Intensity measures;             // of that record
+  const CaseOtherMotion* given = nullptr;  // [[compare.motion]] of the case; null: the case's own
+  std::string hash;                        // SHA-256 of what is put in place of what
+  double intensity = 1;                    // at the factor 1, in the plan's unit
+  std::string record;                      // whose intensity it is; empty: not a record
+  double step = 0, duration = 0;           // s, of that record
+  Intensity measures;                      // of that record
 };
 
 /// One sample of the variables.

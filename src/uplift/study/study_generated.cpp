@@ -27,8 +27,9 @@ GeneratedRecords::GeneratedRecords(const Raw& raw, const std::string& folder) : 
   std::string text = UPLIFT_VERSION;
   for (const Raw& record : *records) {
     const Values values = check(record, record_section());
-    if (!values.has("generate")) continue;
-    names_.push_back(values.text("name"));
+    const CaseRecordSource source = case_record(values);
+    if (!source.generated) continue;
+    names_.push_back(source.name.name);
     text += "\n" + to_toml(values);
   }
   hash_ = sha256(text).substr(0, 16);

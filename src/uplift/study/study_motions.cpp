@@ -122,9 +122,9 @@ std::vector<CaseEdit> absolute_files(const Case& read) {
   const auto add = [&](const Values& table, const char* key) {
     if (table.items().contains(key) && table.has(key)) edits.push_back({table.path(key), absolute_beside(table, key)});
   };
-  const std::vector<Values>& records = root.tables("record");
+  const std::vector<CaseRecordSource>& records = read.input->records;
   for (std::size_t i = 0; i < records.size(); ++i)  // those of the plan have a path there
-    if (records[i].has("file")) edits.push_back({fmt::format("record[{}].file", i), absolute_beside(records[i], "file")});
+    if (records[i].file) edits.push_back({fmt::format("record[{}].file", i), absolute_beside(*records[i].table, "file")});
   for (const CaseFunction& function : read.input->functions) add(*function.shape, "file");
   if (read.input->mesh) add(*read.input->mesh->table, "file");
   if (read.input->reduced_model) edits.push_back({"reduced_model", absolute_beside(root, "reduced_model")});
@@ -163,7 +163,7 @@ Raw with_motions(const Raw& raw, const Values& plan, const Raw& plan_raw) {
   return as_raw(std::move(root), raw);
 }
 
-Raw with_one_motion(const Raw& raw, const Case& read, const Values* motion, double factor) {
+Raw with_one_motion(const Raw& raw, const Case& read, const CaseOtherMotion* motion, double factor) {
   std::vector<CaseEdit> edits = absolute_files(read);
   std::set<std::string> drives;
   for (const DrivenBy& place : motions_wanted(read)) {

@@ -10,6 +10,6 @@ Raw with_motions(const Raw& raw, const Values& plan, const Raw& plan_raw);
 
 /// The case under one motion alone, times a factor, as `uplift run` takes it: names are replaced, records get the process "scale", paths
 /// of files are absolute. `read`: the checked case; `motion`: of [[compare.motion]], or null for the case's own.
-Raw with_one_motion(const Raw& raw, const Case& read, const Values* motion, double factor);
+Raw with_one_motion(const Raw& raw, const Case& read, const CaseOtherMotion* motion, double factor);
 
 }  // namespace uplift

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "uplift/base/format.h"
+#include "uplift/case/schema/analysis_sections.h"
 
 namespace uplift {
 namespace {
@@ -35,10 +36,6 @@ std::vector<std::pair<Quantity, double>> quantity_peaks(const RunSpec& spec, con
   const auto has_pressure = [](const Interface& interface) { return !interface.footprint; };
   if (std::ranges::any_of(built.model.interfaces, has_pressure)) add("pressure", run.max_pressure.value);
   return peaks;
-}
-
-std::string shown(const Values& table) {
-  return table.has("label") ? table.text("label") : table.text("name");
 }
 
 /// Envelope, mean and standard deviation over the runs that were completed.
@@ -116,7 +113,7 @@ std::string said_over_motions(const std::vector<JudgedMotion>& judged, const Mot
 std::vector<MotionTable> motion_tables(const std::vector<RunSpec>& specs, const std::deque<BuiltCase>& built,
                                        const std::vector<RunResult>& results) {
   std::vector<MotionTable> tables;
-  std::vector<std::pair<std::string, const Values*>> keys;  // label and damping of a table
+  std::vector<std::pair<std::string, const CaseDamping*>> keys;  // label and damping of a table
   for (std::size_t i = 0; i < results.size(); ++i) {
     const RunSpec& spec = specs[i];
     if (spec.motion_label.empty()) continue;
@@ -127,7 +124,7 @@ std::vector<MotionTable> motion_tables(const std::vector<RunSpec>& specs, const 
       keys.push_back(key);
       MotionTable& made = tables.emplace_back();
       made.run = spec.label;
-      if (spec.damping && spec.damping->items().contains("name")) made.damping = shown(*spec.damping);
+      if (spec.damping) made.damping = spec.damping->label;
       for (const auto& [quantity, value] : peaks) made.quantities.push_back(quantity);
     }
     MotionTable::Row row{spec.motion_label, results[i].status, {}};

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "uplift/base/format.h"
+#include "uplift/case/schema/analysis_sections.h"
 #include "uplift/verdict/compare.h"
 #include "uplift/verdict/numbers.h"
 
@@ -60,15 +61,11 @@ FloorSpectra over_runs(const std::vector<FloorRun>& runs, const std::vector<std:
   return floor_envelope(same, broadening);
 }
 
-std::string label_of(const Values& damping) {
-  return damping.text(damping.has("label") ? "label" : "name");
-}
-
 void add_envelopes(const RunPlan& plan, const std::vector<RunResult>& results, const std::vector<RunSpec>& specs, FloorAnswers& answers) {
-  std::vector<const Values*> dampings;
+  std::vector<const CaseDamping*> dampings;
   for (const RunSpec& spec : specs)
     if (std::ranges::find(dampings, spec.damping) == dampings.end()) dampings.push_back(spec.damping);
-  for (const Values* damping : dampings) {
+  for (const CaseDamping* damping : dampings) {
     std::vector<std::size_t> sound, bonded;
     for (std::size_t i = 0; i < results.size(); ++i) {
       if (specs[i].damping != damping || answers.runs[i].floors.size() != plan.floors.size()) continue;
@@ -76,7 +73,7 @@ void add_envelopes(const RunPlan& plan, const std::vector<RunResult>& results, c
       if (specs[i].bonded && results[i].status == RunStatus::completed) bonded.push_back(i);
     }
     if (sound.size() < 2) continue;
-    FloorEnvelope made{dampings.size() > 1 ? label_of(*damping) : "", static_cast<int>(sound.size()), {}, {}};
+    FloorEnvelope made{dampings.size() > 1 && damping != nullptr ? damping->label : "", static_cast<int>(sound.size()), {}, {}};
     for (std::size_t k = 0; k < plan.floors.size(); ++k) {
       made.floors.push_back(over_runs(answers.runs, sound, k, plan.floors[k].broadening));
     }

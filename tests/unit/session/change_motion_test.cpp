@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "uplift/case/schema/case_input.h"
 #include "uplift/session/steps.h"
 
 namespace uplift::change_motion_test {
@@ -32,7 +33,7 @@ struct Runs {
   explicit Runs(const std::string& drives) : read(load_case_text(footing(drives), "case.toml", "test", MeshFiles::in_process)) {
     other = own = runs_of_case(read.read).front();
     own.motion = nullptr;
-    other.motion = &read.read.values.table("compare").tables("motion").front();
+    other.motion = &read.read.input->compare->motions.front();
     other.motion_factor = -2.5;
   }
   LoadedCase read;

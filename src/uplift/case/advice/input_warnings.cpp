@@ -50,17 +50,14 @@ void warn_gravity(const std::optional<CaseGravity>& gravity, std::vector<std::st
                    fmt::format("the weight acts with {:g} m/s2, on Earth it is 9.81 m/s2; is the unit right (981 cm/s2)?", size));
 }
 
-void warn_damping(const Values* damping, std::vector<std::string>& said) {
+void warn_damping(const std::optional<CaseDamping>& damping, std::vector<std::string>& said) {
   constexpr double most = 0.5;
-  if (damping == nullptr) return;
-  const auto say = [&](const Values& table, const char* key, double ratio) {
-    said.push_back(place_of(table, key) +
-                   fmt::format("a damping ratio of {:g} is {:g} % of the critical damping; 5 % are 0.05", ratio, 100 * ratio));
-  };
-  for (const double ratio : damping->numbers("modal"))
-    if (ratio >= most) say(*damping, "modal", ratio);
-  for (const Values& pair : damping->tables("rayleigh"))
-    if (pair.number("ratio") >= most) say(pair, "ratio", pair.number("ratio"));
+  if (!damping) return;
+  for (const CaseDamping::Ratio& ratio : damping->ratios)
+    if (ratio.value >= most)
+      said.push_back(
+          place_of(*ratio.table, ratio.key) +
+          fmt::format("a damping ratio of {:g} is {:g} % of the critical damping; 5 % are 0.05", ratio.value, 100 * ratio.value));
 }
 
 /// Lengths in other units, and masses in tonnes.

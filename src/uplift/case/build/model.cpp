@@ -212,8 +212,8 @@ void add_functions(const Case& read, CaseNames& names) {
     names.functions.add(function.name);
     names.functions_made.push_back(make_part(function_catalog(), *function.shape));
   }
-  for (const Values& record : read.values.tables("record")) {
-    names.functions.add(record, "name");
+  for (const CaseRecordSource& record : read.input->records) {
+    names.functions.add(record.name);
     names.functions_made.push_back(nullptr);
   }
   names.records = &read.records;

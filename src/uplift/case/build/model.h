@@ -22,7 +22,7 @@ struct CaseNames {
   std::vector<Place> positions;                                     // of the nodes
   std::vector<std::shared_ptr<const TimeFunction>> functions_made;  // then the records: null
   const std::vector<CaseRecord>* records = nullptr;
-  const Values* instead = nullptr;                     // [[compare.motion]] of the run; null: as in the case
+  const CaseOtherMotion* instead = nullptr;            // [[compare.motion]] of the run; null: as in the case
   double motion_factor = 1;                            // see RunSpec
   std::vector<FunctionUse>* functions_used = nullptr;  // the functions that are given out; null: they are not wanted
   /// Whether a function is a record, which has a unit.

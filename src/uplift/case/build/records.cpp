@@ -19,38 +19,32 @@ namespace uplift {
 namespace {
 
 /// The component that the table names, of those in the file, or numbers: channels of a building may all be called "360 Deg".
-Motion component_of(const Values& record, std::vector<Motion> motions) {
+Motion component_of(const CaseRecordSource& record, std::vector<Motion> motions) {
   std::vector<std::string> known, quoted;
   for (const Motion& each : motions) known.push_back(each.component);
   const auto times = [&](const std::string& name) { return std::ranges::count(known, name); };
   const bool numbered = std::ranges::any_of(known, [&](const std::string& name) { return name.empty() || times(name) > 1; });
   for (std::size_t i = 0; i < known.size(); ++i)
     quoted.push_back(numbered ? fmt::format("\"{}\" ({})", i + 1, in_quotes(known[i])) : in_quotes(known[i]));
-  if (!record.has("component")) {
+  if (!record.component) {
     if (motions.size() > 1) fail(record, "", "component, one of " + listed(quoted) + " in this file", "none");
     return std::move(motions.front());
   }
-  const std::string& wanted = record.text("component");
-  if (times(wanted) > 1) fail(record, "component", "a number: one of " + listed(quoted), in_quotes(wanted) + ", which several are called");
+  const std::string& wanted = record.component->name;
+  if (times(wanted) > 1) fail(*record.component, "a number: one of " + listed(quoted), in_quotes(wanted) + ", which several are called");
   for (std::size_t i = 0; i < motions.size(); ++i)
     if (times(wanted) == 0 && wanted == fmt::format("{}", i + 1)) return std::move(motions[i]);
   const auto found = std::ranges::find(known, wanted);
   if (found == known.end())
-    fail(record, "component", (known.size() > 1 ? "one of " : "") + listed(quoted), in_quotes(wanted), nearest_name(wanted, known));
+    fail(*record.component, (known.size() > 1 ? "one of " : "") + listed(quoted), in_quotes(wanted), nearest_name(wanted, known));
   return std::move(motions[static_cast<std::size_t>(found - known.begin())]);
 }
 
-Motion read_record(const Values& record) {
-  RecordOptions options;
-  if (record.has("format")) options.format = record.text("format");
-  if (record.has("unit")) options.unit = record.text("unit");
-  if (record.has("step")) options.step = record.number("step");
-  if (record.has("column")) options.column = record.text("column");
-  const std::string path = record_path(record);
-  if (!std::filesystem::is_regular_file(path)) fail(record, "file", "a file", escaped(path));
+Motion read_record(const CaseRecordSource& record) {
+  if (!std::filesystem::is_regular_file(record.location)) fail(*record.file, "a file", escaped(record.location));
   try {
-    Motion motion = component_of(record, read_motions(path, options));
-    motion.file = record.text("file");
+    Motion motion = component_of(record, read_motions(record.location, record.options));
+    motion.file = record.file->name;
     return motion;
   } catch (const InputError& error) {
     // what is wrong with an option has the option's name and no place
@@ -76,19 +70,19 @@ bool same(const GenerateOptions& a, const GenerateOptions& b) {
   return all(a) == all(b);
 }
 
-std::vector<Family> families_of(const std::vector<Values>& records) {
+std::vector<Family> families_of(const std::vector<CaseRecordSource>& records) {
   std::vector<Family> families;
   for (std::size_t i = 0; i < records.size(); ++i) {
-    if (!records[i].has("generate")) continue;
-    const Values& generate = records[i].table("generate");
-    std::unique_ptr<const TargetSpectrum> target = make_part(target_catalog(), generate.part("target"));
-    const GenerateOptions options = generate_options(generate, *target);
+    if (!records[i].generated) continue;
+    const CaseGenerated& generated = *records[i].generated;
+    std::unique_ptr<const TargetSpectrum> target = make_part(target_catalog(), *generated.target);
+    const GenerateOptions options = generate_options(*generated.table, *target);
     auto family = std::ranges::find(families, options.seed, [](const Family& each) { return each.options.seed; });
     if (family == families.end()) family = families.insert(family, Family{options, {}, {}});
     if (!same(family->options, options))
-      fail(generate, "seed",
+      fail(generated, "seed",
            fmt::format("a seed of its own (the record {} has this one with other times or another band)",
-                       in_quotes(records[family->records.front()].text("name"))),
+                       in_quotes(records[family->records.front()].name.name)),
            fmt::format("{}", options.seed));
     family->records.push_back(i);
     family->targets.push_back(std::move(target));
@@ -97,7 +91,7 @@ std::vector<Family> families_of(const std::vector<Values>& records) {
 }
 
 /// Of every record, empty for those from files.
-std::vector<Motion> generate_records(const std::vector<Values>& records) {
+std::vector<Motion> generate_records(const std::vector<CaseRecordSource>& records) {
   std::vector<Motion> made(records.size());
   for (const Family& family : families_of(records)) {
     std::vector<const TargetSpectrum*> targets;
@@ -113,33 +107,17 @@ std::vector<Motion> generate_records(const std::vector<Values>& records) {
   return made;
 }
 
-/// A record comes from a file or is generated, and says nothing of the other.
-void check_source(const Values& record) {
-  const bool file = record.has("file"), generate = record.has("generate");
-  if (file == generate) fail(record, file ? "generate" : "", "either file or generate", file ? "both" : "neither");
-  for (const char* key : {"format", "unit", "step", "column", "component"})
-    if (generate && record.has(key)) fail(record, key, "a key of generate", fmt::format("{}, which is for files", key));
-}
-
 }  // namespace
 
-std::string record_path(const Values& record) {
-  const std::filesystem::path given = record.text("file");
-  const std::filesystem::path folder = std::filesystem::path(record.where().file).parent_path();
-  return (given.is_absolute() ? given : folder / given).lexically_normal().string();
-}
-
-std::vector<CaseRecord> read_records(const Values& root) {
+std::vector<CaseRecord> read_records(const std::vector<CaseRecordSource>& sources) {
   std::vector<CaseRecord> made;
-  const std::vector<Values>& records = root.tables("record");
-  for (const Values& record : records) check_source(record);
-  std::vector<Motion> generated = generate_records(records);
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    const Values& record = records[i];
-    Motion motion = record.has("file") ? read_record(record) : std::move(generated[i]);
-    motion.name = record.text("name");
-    for (const Values& step : record.tables("process")) motion = make_part(process_catalog(), step.part("do"))->apply(std::move(motion));
-    check_values(motion, record.where(), record.path());
+  std::vector<Motion> generated = generate_records(sources);
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const CaseRecordSource& source = sources[i];
+    Motion motion = source.file ? read_record(source) : std::move(generated[i]);
+    motion.name = source.name.name;
+    for (const Values* step : source.processes) motion = make_part(process_catalog(), *step)->apply(std::move(motion));
+    check_values(motion, source.where(), source.path());
     made.push_back({motion.name, std::make_shared<const MotionHistory>(std::make_shared<const Motion>(std::move(motion)))});
   }
   return made;
@@ -157,20 +135,17 @@ std::shared_ptr<const MotionHistory> scaled(const std::shared_ptr<const MotionHi
   return std::make_shared<const MotionHistory>(std::make_shared<const Motion>(std::move(motion)));
 }
 
-const std::string& name_taken(const Values* instead, const std::string& name) {
-  if (!instead) return name;
-  const std::vector<std::string>& replaced = instead->texts("replace");
-  const auto found = std::ranges::find(replaced, name);
-  return found == replaced.end() ? name : instead->texts("by")[static_cast<std::size_t>(found - replaced.begin())];
+const std::string& name_taken(const CaseOtherMotion* instead, const std::string& name) {
+  return instead != nullptr ? instead->taken(name) : name;
 }
 
-void check_motion(const Case& read, const Values& motion) {
-  const std::vector<std::string>&replaced = motion.texts("replace"), &by = motion.texts("by");
+void check_motion(const Case& read, const CaseOtherMotion& motion) {
+  const std::vector<std::string>&replaced = motion.replace, &by = motion.by;
   if (by.size() != replaced.size())
     fail(motion, "by", fmt::format("as many names as in replace ({})", replaced.size()), fmt::format("{}", by.size()));
   Names known("function or record");
   for (const CaseFunction& function : read.input->functions) known.add(function.name);
-  for (const Values& record : read.values.tables("record")) known.add(record, "name");
+  for (const CaseRecordSource& record : read.input->records) known.add(record.name);
   std::vector<std::string> drives;
   for (const DrivenBy& place : motions_wanted(read)) drives.push_back(place.function.name);
   for (std::size_t i = 0; i < by.size(); ++i) {
@@ -192,7 +167,7 @@ std::vector<DrivenBy> motions_wanted(const Case& read) {
   return wanted;
 }
 
-std::vector<MotionUse> motions_used(const Case& read, const Values* instead, double factor) {
+std::vector<MotionUse> motions_used(const Case& read, const CaseOtherMotion* instead, double factor) {
   std::vector<MotionUse> used;
   for (const DrivenBy& place : motions_wanted(read)) {
     const std::string& name = name_taken(instead, place.function.name);

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "uplift/case/schema/case_table.h"
+#include "uplift/case/schema/record_sections.h"
 #include "uplift/motion/motion_function.h"
 #include "uplift/run/run.h"
 
@@ -20,17 +20,11 @@ struct CaseRecord {
   const Motion& motion() const { return *history->motion(); }
 };
 
-/// Tables of the case file that stand for records.
-const Section& record_section();
-const Section& compare_motion_section();
-
 /// Reads and processes all records of a checked case file. Throws InputError.
-std::vector<CaseRecord> read_records(const Values& root);
-/// Path of a record's file that can be opened from here.
-std::string record_path(const Values& record);
+std::vector<CaseRecord> read_records(const std::vector<CaseRecordSource>& sources);
 
 /// Refuses a [[compare.motion]] whose names do not pair, drive nothing or do not exist.
-void check_motion(const Case&, const Values& motion);
+void check_motion(const Case&, const CaseOtherMotion& motion);
 /// A history that gives a quantity: this one, or when it would have to be differentiated, that of its spline (see converted).
 std::shared_ptr<const MotionHistory> giving(const std::shared_ptr<const MotionHistory>& history, MotionKind kind);
 
@@ -38,7 +32,7 @@ std::shared_ptr<const MotionHistory> giving(const std::shared_ptr<const MotionHi
 std::shared_ptr<const MotionHistory> scaled(const std::shared_ptr<const MotionHistory>& history, double factor);
 
 /// The function or record that is taken instead of another: `instead` is a [[compare.motion]], or null.
-const std::string& name_taken(const Values* instead, const std::string& name);
+const std::string& name_taken(const CaseOtherMotion* instead, const std::string& name);
 
 /// A place of the case file where a function, or a record, drives the model.
 struct DrivenBy {
@@ -53,7 +47,7 @@ struct MotionUse {
   std::shared_ptr<const MotionHistory> history;
   MotionKind kind;
 };
-std::vector<MotionUse> motions_used(const Case&, const Values* instead, double factor = 1);
+std::vector<MotionUse> motions_used(const Case&, const CaseOtherMotion* instead, double factor = 1);
 
 /// What the displacement of a record gets on top, see MotionFunction [s2]: zero when the dynamic stages differ or damp numerically.
 double newmark_share(const std::vector<Stage>& stages);

@@ -27,25 +27,6 @@ Fields damping_fields() {
           integer("modes", "number of damped modes; the last ratio is repeated").between(0, 100000).standard(0.0)};
 }
 
-}  // namespace
-
-const Section& damping_section() {
-  static const Section s{
-      "damping",
-      "damping of the structure, none across an interface; mass-proportional and modal damping also act on rocking and on free flight",
-      damping_fields()};
-  return s;
-}
-
-const Section& damping_case_section() {
-  static const Section s = [] {
-    Section made{"damping", "one damping with which all variants are run; without any value: undamped", damping_fields()};
-    made.fields.insert(made.fields.begin(), {text("name", "name, part of the names of the runs"), text("label", "as shown").optional()});
-    return made;
-  }();
-  return s;
-}
-
 BulkDamping bulk_damping(const Values& damping) {
   BulkDamping made{damping.number("alpha"), damping.number("beta"), damping.numbers("modal"), damping.integer("modes")};
   if (made.modal_count == 0) made.modal_count = static_cast<int>(made.modal.size());
@@ -66,6 +47,33 @@ BulkDamping bulk_damping(const Values& damping) {
            fmt::format("alpha = {:.4g} 1/s, beta = {:.4g} s", made.alpha, made.beta));
   }
   return made;
+}
+
+}  // namespace
+
+const Section& damping_section() {
+  static const Section s{
+      "damping",
+      "damping of the structure, none across an interface; mass-proportional and modal damping also act on rocking and on free flight",
+      damping_fields()};
+  return s;
+}
+
+const Section& damping_case_section() {
+  static const Section s = [] {
+    Section made{"damping", "one damping with which all variants are run; without any value: undamped", damping_fields()};
+    made.fields.insert(made.fields.begin(), {text("name", "name, part of the names of the runs"), text("label", "as shown").optional()});
+    return made;
+  }();
+  return s;
+}
+
+CaseDamping case_damping(const Values& table) {
+  CaseDamping damping{{{&table}, {}, {}}, {}, bulk_damping(table)};
+  if (table.section() == &damping_case_section()) static_cast<CaseNamed&>(damping) = case_named(table);
+  for (const double ratio : table.numbers("modal")) damping.ratios.push_back({{&table}, "modal", ratio});
+  for (const Values& pair : table.tables("rayleigh")) damping.ratios.push_back({{&pair}, "ratio", pair.number("ratio")});
+  return damping;
 }
 
 const Section& stage_section() {

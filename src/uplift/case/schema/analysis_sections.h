@@ -1,5 +1,5 @@
 #pragma once
-#include "uplift/case/schema/case_table.h"
+#include "uplift/case/schema/record_sections.h"
 #include "uplift/model/builder.h"
 
 // Damping, stages and limits: declarations, used by case/schema/sections.cpp alone, and what their tables are read into.
@@ -8,7 +8,16 @@ namespace uplift {
 const Section& damping_section();
 /// [[compare.damping]]: the same with a name.
 const Section& damping_case_section();
-BulkDamping bulk_damping(const Values& damping);
+struct CaseDamping : CaseNamed {  // [damping] has no name
+  /// A ratio to the critical damping where it stands.
+  struct Ratio : CaseTable {
+    std::string_view key;
+    double value;
+  };
+  std::vector<Ratio> ratios;
+  BulkDamping made;
+};
+CaseDamping case_damping(const Values&);
 
 const Section& stage_section();
 struct CaseStage : CaseTable {

@@ -40,6 +40,7 @@ void add_rest_of_input(const Values& root, const Mesh* mesh, CaseInput& made) {
   made.grounds = all(root, "ground_acceleration", case_ground, space);
   if (const Values* gravity = table_if(root, "gravity")) made.gravity = case_gravity(*gravity, space);
   made.functions = all(root, "function", case_function);
+  made.records = all(root, "record", case_record);
   made.loads = all(root, "load", case_load, space);
   made.initial = all(root, "initial", case_initial, space);
   made.stages = all(root, "stage", case_stage);
@@ -49,10 +50,11 @@ void add_rest_of_input(const Values& root, const Mesh* mesh, CaseInput& made) {
   made.title = root.text("title");
   made.description = text_or(root, "description", "");
   made.bonded = root.flag("bonded");
-  if (const Values* verdict = table_if(root, "verdict")) made.step_check = verdict->flag("step_check");
+  if (const Values* verdict = table_if(root, "verdict")) made.verdict = case_verdict(*verdict);
   made.method = table_if(root, "method");
   made.impact = table_if(root, "impact");
-  made.damping = table_if(root, "damping");
+  made.solver = &root.part("solver");
+  if (const Values* damping = table_if(root, "damping")) made.damping = case_damping(*damping);
   made.interface_solver = root.text("interface_solver");
   if (root.has("reduced_model")) made.reduced_model = root.text("reduced_model");
   made.variants = all(root, "variant", case_variant);

@@ -4,6 +4,7 @@
 #include "uplift/case/schema/interface_sections.h"
 #include "uplift/case/schema/output_sections.h"
 #include "uplift/case/schema/structure_sections.h"
+#include "uplift/case/schema/verdict_sections.h"
 
 namespace uplift {
 
@@ -27,6 +28,7 @@ struct CaseInput {
   std::vector<CaseGround> grounds;
   std::optional<CaseGravity> gravity;
   std::vector<CaseFunction> functions;
+  std::vector<CaseRecordSource> records;
   std::vector<CaseLoad> loads;
   std::vector<CaseInitial> initial;
   std::vector<CaseStage> stages;
@@ -35,8 +37,11 @@ struct CaseInput {
   CaseOutput output;
   // how it is run
   std::string title, description;
-  bool bonded = true, step_check = true;
-  const Values *method = nullptr, *impact = nullptr, *damping = nullptr;  // null: not stated
+  bool bonded = true;
+  const Values *method = nullptr, *impact = nullptr;  // null: not stated
+  const Values* solver;
+  std::optional<CaseDamping> damping;
+  CaseVerdict verdict;
   std::string interface_solver;
   std::optional<std::string> reduced_model;
   std::vector<CaseVariant> variants;

@@ -1,7 +1,5 @@
 #include "uplift/case/schema/comparison_sections.h"
 
-#include "uplift/case/build/records.h"
-#include "uplift/case/schema/analysis_sections.h"
 #include "uplift/contact/impact/impact.h"
 #include "uplift/contact/method.h"
 #include "uplift/dynamics/scheme.h"
@@ -11,10 +9,6 @@ namespace uplift {
 namespace {
 
 using Fields = std::vector<Field>;
-
-CaseNamed case_named(const Values& table) {
-  return {{&table}, name_used(table, "name"), text_or(table, "label", table.text("name"))};
-}
 
 const Section& sweep_section() {
   static const Section s{
@@ -97,8 +91,8 @@ const Section& compare_section() {
 
 CaseComparison case_comparison(const Values& table) {
   CaseComparison made{table.number("band"), names_used(table, "agree_on"), {}, {}, {}};
-  for (const Values& damping : table.tables("damping")) made.dampings.push_back(case_named(damping));
-  for (const Values& motion : table.tables("motion")) made.motions.push_back(case_named(motion));
+  for (const Values& damping : table.tables("damping")) made.dampings.push_back(case_damping(damping));
+  for (const Values& motion : table.tables("motion")) made.motions.push_back(case_other_motion(motion));
   if (const Values* sweep = table_if(table, "stiffness_sweep")) made.sweep = case_sweep(*sweep);
   return made;
 }

@@ -1,5 +1,6 @@
 #pragma once
-#include "uplift/case/schema/case_table.h"
+#include "uplift/case/schema/analysis_sections.h"
+#include "uplift/case/schema/record_sections.h"
 
 // What is compared, trust bands and where values come from: declarations, used by case/schema/sections.cpp alone, and what their tables
 // are read into.
@@ -19,11 +20,6 @@ struct CaseVariant : CaseTable {
 };
 CaseVariant case_variant(const Values&);
 
-/// A table of [[compare.damping]] or [[compare.motion]].
-struct CaseNamed : CaseTable {
-  NameUsed name;
-  std::string label;
-};
 struct CaseSweep : CaseTable {
   const Values* law;
   std::string parameter;
@@ -39,7 +35,8 @@ const Section& compare_section();
 struct CaseComparison {
   double band = agreement_band;
   std::vector<NameUsed> agree_on;
-  std::vector<CaseNamed> dampings, motions;
+  std::vector<CaseDamping> dampings;
+  std::vector<CaseOtherMotion> motions;
   std::optional<CaseSweep> sweep;
 };
 CaseComparison case_comparison(const Values&);

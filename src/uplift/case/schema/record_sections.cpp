@@ -1,4 +1,10 @@
-#include "uplift/case/build/records.h"
+#include "uplift/case/schema/record_sections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
 #include "uplift/motion/generate.h"
 #include "uplift/motion/processing/processing.h"
 
@@ -18,6 +24,19 @@ const Section& generate_record_section() {
     return made;
   }();
   return s;
+}
+
+/// Path of a record's file that can be opened from here.
+std::string location_of(const Values& record) {
+  const std::filesystem::path given = record.text("file");
+  const std::filesystem::path folder = std::filesystem::path(record.where().file).parent_path();
+  return (given.is_absolute() ? given : folder / given).lexically_normal().string();
+}
+
+std::vector<const Values*> processes_of(const Values& record) {
+  std::vector<const Values*> made;
+  for (const Values& step : record.tables("process")) made.push_back(&step.part("do"));
+  return made;
 }
 
 }  // namespace
@@ -41,6 +60,26 @@ const Section& record_section() {
   return s;
 }
 
+CaseRecordSource case_record(const Values& table) {
+  const Values* generate = table_if(table, "generate");
+  if (first_of_two(table, "file", "generate"))
+    return {{&table},
+            name_used(table, "name"),
+            name_used(table, "file"),
+            location_of(table),
+            {text_or(table, "format", ""), text_or(table, "unit", ""), number_if(table, "step"), text_or(table, "column", "")},
+            name_if(table, "component"),
+            {},
+            processes_of(table)};
+  for (const char* key : {"format", "unit", "step", "column", "component"})
+    if (table.has(key)) fail(table, key, "a key of generate", fmt::format("{}, which is for files", key));
+  return {{&table}, name_used(table, "name"), {}, {}, {}, {}, CaseGenerated{{generate}, &generate->part("target")}, processes_of(table)};
+}
+
+CaseNamed case_named(const Values& table) {
+  return {{&table}, name_used(table, "name"), text_or(table, "label", table.text("name"))};
+}
+
 const Section& compare_motion_section() {
   static const Section s{
       "motion",
@@ -51,6 +90,15 @@ const Section& compare_motion_section() {
        texts("replace", "names of records or functions that drive the case"),
        texts("by", "names of the records that take their places, in the same order")}};
   return s;
+}
+
+CaseOtherMotion case_other_motion(const Values& table) {
+  return {case_named(table), table.texts("replace"), table.texts("by")};
+}
+
+const std::string& CaseOtherMotion::taken(const std::string& asked) const {
+  const auto found = std::ranges::find(replace, asked);
+  return found == replace.end() ? asked : by[static_cast<std::size_t>(found - replace.begin())];
 }
 
 }  // namespace uplift

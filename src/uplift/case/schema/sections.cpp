@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
-#include "uplift/case/build/criteria.h"
-#include "uplift/case/build/records.h"
 #include "uplift/case/schema/analysis_sections.h"
 #include "uplift/case/schema/comparison_sections.h"
 #include "uplift/case/schema/interface_sections.h"
 #include "uplift/case/schema/mesh_sections.h"
 #include "uplift/case/schema/output_sections.h"
+#include "uplift/case/schema/record_sections.h"
 #include "uplift/case/schema/structure_sections.h"
+#include "uplift/case/schema/verdict_sections.h"
 #include "uplift/contact/impact/impact.h"
 #include "uplift/contact/method.h"
 #include "uplift/dynamics/scheme.h"
