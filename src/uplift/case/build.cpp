@@ -15,6 +15,7 @@
 #include "uplift/case/ground/ground.h"
 #include "uplift/case/schema/sections.h"
 #include "uplift/case/shown.h"
+#include "uplift/laws/stated.h"
 #include "uplift/linear/large.h"
 #include "uplift/model/base_size.h"
 #include "uplift/model/check.h"
@@ -73,10 +74,10 @@ void add_interfaces(const Case& read, const RunSpec& spec, const Model* like, Mo
     if (made.cone && !joint.facts.why_no_cones.empty())
       fail(behaviour, "", fmt::format("a traction law on {}: constraints at all of its points are too many", joint.facts.why_no_cones),
            in_quotes(behaviour.type()));
-    if (behaviour.items().contains("friction") && behaviour.has("friction")) joint.facts.friction = behaviour.number("friction");
-    if (behaviour.items().contains("cohesion") && behaviour.has("cohesion")) joint.facts.cohesion = behaviour.number("cohesion");
-    if (made.footprint && behaviour.items().contains("friction_angle") && behaviour.has("friction_angle"))
-      joint.facts.friction = std::tan(behaviour.number("friction_angle"));
+    const StatedNumbers stated = stated_numbers(behaviour);
+    if (stated.friction) joint.facts.friction = *stated.friction;
+    if (stated.cohesion) joint.facts.cohesion = *stated.cohesion;
+    if (made.footprint && stated.friction_angle) joint.facts.friction = std::tan(*stated.friction_angle);
     if (made.law) joint.facts.tension = made.law->scales().strength;
     built.facts.push_back(std::move(joint.facts));
     built.behaviours.push_back(&behaviour);

@@ -22,12 +22,10 @@ std::vector<double> force_of(const CaseLoad& load, const Model& model) {
   return {sum.data(), sum.data() + model.space.dimension};
 }
 
-void add_links(const Values& root, const Model& model, std::vector<DrawnParts::Link>& links) {
-  for (const ElementEntry* element : elements_at(ElementPlace::nodes))
-    for (const Values& link : root.tables(element->name)) {
-      const std::vector<std::string>& nodes = link.texts("nodes");
-      links.push_back({model.find_node(nodes.front()), nodes.size() > 1 ? model.find_node(nodes.back()) : -1, element->symbol});
-    }
+void add_links(const CaseInput& input, const Model& model, std::vector<DrawnParts::Link>& links) {
+  for (const CaseElement& link : input.elements_at(ElementPlace::nodes))
+    links.push_back({model.find_node(link.nodes.front().name), link.nodes.size() > 1 ? model.find_node(link.nodes.back().name) : -1,
+                     link.entry->symbol});
 }
 
 void add_bodies(const CaseInput& input, const Model& model, std::vector<DrawnParts::Body>& bodies) {
@@ -64,11 +62,10 @@ const DrawnParts::Body* DrawnParts::body_above(std::size_t interface) const {
 }
 
 DrawnParts drawn_parts(const Case& read, const BuiltCase& built) {
-  const Values& root = read.values;
   const Model& model = built.model;
   DrawnParts parts;
   parts.first_of_mesh = static_cast<int>(read.input->nodes.size());
-  for (const Values* solid : element_tables(root, ElementPlace::cells)) parts.solids.push_back(solid->text("group"));
+  for (const CaseElement& solid : read.input->elements_at(ElementPlace::cells)) parts.solids.push_back(solid.group->name);
   for (const CaseMass& mass : read.input->masses)
     parts.masses.push_back({model.find_node(mass.node.name), mass.mass.value_or(built.tuned_mass)});
   for (const CaseSupport& support : read.input->supports) {
@@ -78,7 +75,7 @@ DrawnParts drawn_parts(const Case& read, const BuiltCase& built) {
   }
   for (const CaseLoad& load : read.input->loads)
     parts.loads.push_back({load.name, node_if_named(load.of, model), group_if_named(load.of), force_of(load, model)});
-  add_links(root, model, parts.links);
+  add_links(*read.input, model, parts.links);
   for (const CaseAbsorbing& face : read.input->absorbing)
     parts.absorbing.push_back({face.group.name, face.free_field, face.incident.has_value()});
   add_bodies(*read.input, model, parts.bodies);

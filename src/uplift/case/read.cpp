@@ -7,6 +7,7 @@
 #include "uplift/base/text.h"
 #include "uplift/case/build/model.h"
 #include "uplift/case/schema/sections.h"
+#include "uplift/elements/bulk_law.h"
 
 namespace uplift {
 namespace {
@@ -74,15 +75,12 @@ std::vector<std::string> input_files(const Case& read) {
     files.push_back(path.lexically_normal().string());
   };
   for (const CaseFunction& function : read.input->functions)
-    if (function.shape->items().contains("file") && function.shape->has("file")) add(name_used(*function.shape, "file"));
+    if (function.file) add(*function.file);
   if (read.input->mesh && read.input->mesh->file) add(*read.input->mesh->file);
-  for (const Values* solid : element_tables(read.values, ElementPlace::cells))
-    for (const char* key : {"law", "plasticity"})
-      if (solid->items().contains(key) && solid->has(key) && solid->part(key).items().contains("library")) {
-        const Values& law = solid->part(key);
-        const std::filesystem::path path = path_beside(law.where("library"), law.text("library"));
-        if (std::filesystem::is_regular_file(path)) files.push_back(path.lexically_normal().string());  // else the law refuses it
-      }
+  for (const CaseElement& solid : read.input->elements_at(ElementPlace::cells))
+    if (const Values* law = stated_bulk_law(*solid.table))
+      if (const std::filesystem::path path = library_of(*law); std::filesystem::is_regular_file(path))  // else the law refuses it
+        files.push_back(path.lexically_normal().string());
   if (const std::optional<std::string>& file = read.input->reduced_model)
     files.push_back(path_beside(read.values.where("reduced_model"), *file).lexically_normal().string());
   for (const CaseRecordSource& record : read.input->records)

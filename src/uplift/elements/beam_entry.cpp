@@ -86,6 +86,10 @@ std::unique_ptr<const Element> made(const ElementSite& site, const Values& beam)
 
 }  // namespace
 
+bool has_idle_density(const Values& beam) {
+  return beam.items().contains("density") && beam.given("density") && !beam.given("mass");
+}
+
 const ElementEntry& entry_element_beam() {
   static const ElementEntry entry{
       {{.name = "beam",

@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -67,6 +68,8 @@ struct BulkLawContext {
 /// Made from that and the parameters of the law.
 using BulkLawEntry = Entry<BulkLaw, BulkLawContext>;
 std::span<const BulkLawEntry* const> bulk_law_catalog();
+/// The shared library that a law is in, as a path from here; empty: none.
+std::filesystem::path library_of(const Values& law);
 std::span<const PartInfo* const> bulk_laws();
 
 }  // namespace uplift

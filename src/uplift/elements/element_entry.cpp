@@ -41,11 +41,4 @@ std::vector<const ElementEntry*> elements_at(ElementPlace place) {
   return found;
 }
 
-std::vector<const Values*> element_tables(const Values& root, ElementPlace place) {
-  std::vector<const Values*> tables;
-  for (const ElementEntry* entry : elements_at(place))
-    for (const Values& table : root.tables(entry->name)) tables.push_back(&table);
-  return tables;
-}
-
 }  // namespace uplift

@@ -30,6 +30,7 @@ class CellFilling {
   virtual ~CellFilling() = default;
   /// Material and thickness, also for what stands beside the cells: faces, surfaces of interfaces and loads.
   virtual const SolidSection& section() const = 0;
+  virtual double damping_beta() const = 0;  // s, of its elements
   virtual std::unique_ptr<Element> make(const CellSite& site) const = 0;
 };
 
@@ -55,8 +56,10 @@ std::span<const ElementEntry* const> element_catalog();
 /// Those that stand at one kind of place.
 std::vector<const ElementEntry*> elements_at(ElementPlace place);
 std::span<const PartInfo* const> element_kinds();
-/// The tables of a case whose elements stand at one kind of place: on lines [[beam]] and what else there is.
-std::vector<const Values*> element_tables(const Values& root, ElementPlace place);
+/// The law that a table of cells states, under `law` or `plasticity`, its older name; null: elastic.
+const Values* stated_bulk_law(const Values& cells);
+/// Whether a [[beam]] states a density that makes no mass.
+bool has_idle_density(const Values& beam);
 
 /// Two numbers in plane models, three in space; InputError otherwise.
 Place vector_of(const Values& table, std::string_view key, Space space);

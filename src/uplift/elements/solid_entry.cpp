@@ -29,9 +29,9 @@ SolidSection section_from(const Values& solid) {
 /// Null: elastic.
 std::shared_ptr<const BulkLaw> law_from(const Values& solid, const SolidSection& section, int dimension) {
   if (solid.has("plasticity") && solid.has("law")) fail(solid, "plasticity", "either law or plasticity, its older name", "both");
-  const char* key = solid.has("plasticity") ? "plasticity" : "law";
-  if (!solid.has(key)) return nullptr;
-  std::shared_ptr<const BulkLaw> law = make_part(bulk_law_catalog(), solid.part(key), {section.material, dimension});
+  const Values* stated = stated_bulk_law(solid);
+  if (stated == nullptr) return nullptr;
+  std::shared_ptr<const BulkLaw> law = make_part(bulk_law_catalog(), *stated, {section.material, dimension});
   if (!law->linear() && section.plane == PlaneState::stress)
     fail(solid, "plane", "plane = \"strain\" for a solid whose law is not elastic", "\"stress\"");
   return law;
@@ -44,6 +44,7 @@ class SolidFilling final : public CellFilling {
         law_(law_from(solid, *section_, dimension)),
         beta_(solid.number("damping_beta")) {}
   const SolidSection& section() const override { return *section_; }
+  double damping_beta() const override { return beta_; }
   std::unique_ptr<Element> make(const CellSite& site) const override {
     std::unique_ptr<Element> element;
     if (!law_ || law_->linear())
@@ -61,6 +62,12 @@ class SolidFilling final : public CellFilling {
 };
 
 }  // namespace
+
+const Values* stated_bulk_law(const Values& cells) {
+  for (const char* key : {"plasticity", "law"})
+    if (cells.items().contains(key) && cells.has(key)) return &cells.part(key);
+  return nullptr;
+}
 
 const ElementEntry& entry_element_solid() {
   static const ElementEntry entry{

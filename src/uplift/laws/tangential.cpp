@@ -363,6 +363,16 @@ std::string tangential_kind(const Values& values) {
   return values.given("K_t") && kind == "none" ? "bonded" : kind;
 }
 
+std::optional<std::string> stated_tangential(const Values& behaviour) {
+  return behaviour.items().contains("tangential") ? std::optional(tangential_kind(behaviour)) : std::nullopt;
+}
+
+std::optional<std::string> decided_tangential(const Values& behaviour) {
+  std::optional<std::string> kind = stated_tangential(behaviour);
+  if (kind && *kind == behaviour.text("tangential")) kind.reset();
+  return kind;
+}
+
 std::unique_ptr<const TangentialPart> make_tangential(const Values& values, double normal_stiffness) {
   const std::string kind = tangential_kind(values);
   if (kind != "coulomb") {

@@ -1,5 +1,7 @@
 #pragma once
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "uplift/laws/normal.h"
 
@@ -46,6 +48,10 @@ std::unique_ptr<const TangentialPart> make_tangential(const Values&, double norm
 /// Name of the part: `tangential` where it is given; else "coulomb" with a friction or cohesion, elastic ("bonded") with a stiffness, and
 /// else the default of the law.
 std::string tangential_kind(const Values&);
+/// Of any law or cone; nothing where it has no key for it.
+std::optional<std::string> stated_tangential(const Values& behaviour);
+/// The kind where other keys decide on another one than that of the table.
+std::optional<std::string> decided_tangential(const Values& behaviour);
 
 /// The parameters that choose and describe the tangential part.
 std::vector<Field> tangential_fields(const char* standard);

@@ -28,17 +28,17 @@ constexpr double trial_seconds = 5;
 /// Quality and resolution of the groups that have a material.
 void look_at_mesh(const Case& read, CaseFindings& found) {
   if (!read.mesh) return;
-  const CaseSolids materials(read.values, *read.mesh);
+  const CaseSolids materials(*read.input, *read.mesh);
   const std::vector<GroupQuality> qualities = quality_by_group(read.mesh->mesh);
   for (const CaseSolids::Solid& solid : materials.solids())
     for (const GroupQuality& quality : qualities) {
-      if (quality.name != solid.table->text("group")) continue;
+      if (quality.name != solid.group()) continue;
       const double speed = solid.section.material.density > 0 ? solid.section.material.s_wave_speed() : 0;
       found.solids.push_back({quality, speed, speed > 0 ? highest_frequency(quality, speed, nodes_per_wavelength) : 0});
     }
-  for (const Values* beam : element_tables(read.values, ElementPlace::lines))
+  for (const CaseElement& beam : read.input->elements_at(ElementPlace::lines))
     for (const GroupQuality& quality : qualities)
-      if (beam->has("group") && quality.name == beam->text("group")) found.beams.push_back(quality);
+      if (beam.group && quality.name == beam.group->name) found.beams.push_back(quality);
   found.pieces = connected_pieces(read.mesh->mesh).count();
 }
 

@@ -15,10 +15,11 @@ namespace uplift {
 namespace {
 
 const ExternalFunction& function_of(const LoadedCase& loaded, const Values& behaviour) {
-  const auto found = loaded.external_laws.find(behaviour.text("name"));
+  const std::string name = external_info(behaviour).name;
+  const auto found = loaded.external_laws.find(name);
   if (found == loaded.external_laws.end())
     throw InputError(behaviour.where("name"), behaviour.path("name"), "the name of a law that the calling program has connected",
-                     in_quotes(behaviour.text("name")) + " (laws of type \"external\" are for users of the library)");
+                     in_quotes(name) + " (laws of type \"external\" are for users of the library)");
   return found->second;
 }
 

@@ -21,10 +21,10 @@ constexpr double accepted_energy = 0.05;
 MeshReach lowest_reach(const Case& read) {
   MeshReach lowest;
   if (!read.mesh) return lowest;
-  const CaseSolids materials(read.values, *read.mesh);
+  const CaseSolids materials(*read.input, *read.mesh);
   const std::vector<GroupQuality> qualities = quality_by_group(read.mesh->mesh);
   for (const CaseSolids::Solid& solid : materials.solids()) {
-    const auto quality = std::ranges::find(qualities, solid.table->text("group"), &GroupQuality::name);
+    const auto quality = std::ranges::find(qualities, solid.group(), &GroupQuality::name);
     if (quality == qualities.end() || !(solid.section.material.density > 0)) continue;
     const double reach = highest_frequency(*quality, solid.section.material.s_wave_speed(), nodes_per_wavelength);
     if (reach < lowest.frequency) lowest = {quality->name, reach};

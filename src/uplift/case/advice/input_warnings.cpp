@@ -9,6 +9,8 @@
 #include "uplift/base/format.h"
 #include "uplift/base/text.h"
 #include "uplift/case/build/model.h"
+#include "uplift/elements/bulk_laws/drucker_prager.h"
+#include "uplift/laws/stated.h"
 #include "uplift/model/function_jumps.h"
 
 namespace uplift {
@@ -22,24 +24,23 @@ std::string place_of(const Values& table, std::string_view key) {
 void warn_friction(const BuiltCase& built, std::vector<std::string>& said) {
   constexpr double most = 2;
   for (const Values* law : built.behaviours)
-    if (law->items().contains("friction") && law->given("friction") && law->number("friction") > most)
-      said.push_back(place_of(*law, "friction") +
-                     fmt::format("friction = {:g} is a coefficient, not an angle: an angle of 35 degrees has tan(35 deg) = 0.70",
-                                 law->number("friction")));
+    if (const auto friction = stated_numbers(*law).friction; friction && *friction > most)
+      said.push_back(
+          place_of(*law, "friction") +
+          fmt::format("friction = {:g} is a coefficient, not an angle: an angle of 35 degrees has tan(35 deg) = 0.70", *friction));
 }
 
 /// A circle around Tresca's hexagon: without friction the compression edges are those of extension, and pure shear bears 2/sqrt(3) c.
-void warn_cone(const Values& root, Space space, std::vector<std::string>& said) {
-  if (space.dimension != 2) return;
-  for (const Values& solid : root.tables("solid")) {
-    const char* key = solid.has("plasticity") ? "plasticity" : "law";
-    if (!solid.has(key)) continue;
-    const Values& law = solid.part(key);
-    if (law.type() != "drucker_prager" || law.number("friction_angle") > 0 || law.text("fit") == "plane_strain") continue;
-    said.push_back(place_of(law, "friction_angle") +
+void warn_cone(const CaseInput& input, std::vector<std::string>& said) {
+  if (input.space.dimension != 2) return;
+  for (const CaseElement& solid : input.elements_at(ElementPlace::cells)) {
+    const Values* law = stated_bulk_law(*solid.table);
+    const std::string* fit = law != nullptr ? fit_too_strong(*law) : nullptr;
+    if (fit == nullptr) continue;
+    said.push_back(place_of(*law, "friction_angle") +
                    fmt::format("fit = \"{}\" in plane strain: without friction the ground bears 2/sqrt(3) = 1.15 times what its cohesion "
                                "does; take fit = \"plane_strain\"",
-                               law.text("fit")));
+                               *fit));
   }
 }
 
@@ -113,7 +114,7 @@ void warn_jumps(const Case& read, const RunSpec& spec, const BuiltCase& built, s
 
 void warn_input(const Case& read, const RunSpec& spec, const BuiltCase& built, std::vector<std::string>& said) {
   warn_friction(built, said);
-  warn_cone(read.values, built.model.space, said);
+  warn_cone(*read.input, said);
   warn_gravity(read.input->gravity, said);
   warn_damping(read.input->damping, said);
   warn_size(built, said);

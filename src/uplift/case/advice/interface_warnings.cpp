@@ -211,7 +211,7 @@ void warn_element_jumps(const CaseCut& cut, const std::vector<CutFace>& faces, c
 
 void warn_cuts(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
   if (!read.mesh || read.mesh->cut.empty()) return;
-  const CaseSolids solids(read.values, *read.mesh);
+  const CaseSolids solids(*read.input, *read.mesh);
   const std::vector<CaseInterface>& tables = read.input->interfaces;
   for (std::size_t t = 0; t < tables.size(); ++t)
     for (const Interface& interface : built.model.interfaces) {

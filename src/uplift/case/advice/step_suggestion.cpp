@@ -59,7 +59,7 @@ void bound_by_bounces(const std::vector<ResolvedMode>& moving, std::vector<StepB
 /// is not resolved otherwise.
 void bound_by_contact_mesh(const Case& read, const BuiltCase& built, std::vector<StepBound>& bounds) {
   if (!read.mesh) return;
-  const CaseSolids solids(read.values, *read.mesh);
+  const CaseSolids solids(*read.input, *read.mesh);
   for (std::size_t k = 0; k < built.facts.size(); ++k) {
     double speed = 0;
     for (const FacePair& faces : built.facts[k].faces)

@@ -58,12 +58,12 @@ void warn_magnitudes(const Case& read, std::vector<std::string>& said) {
 
 /// A density alone makes no mass.
 void warn_massless_beams(const Case& read, std::vector<std::string>& said) {
-  for (const Values& beam : read.values.tables("beam"))
-    if (beam.given("density") && !beam.given("mass"))
+  for (const CaseElement& beam : read.input->elements_at(ElementPlace::lines))
+    if (has_idle_density(*beam.table))
       said.push_back(
           fmt::format("{}:{}: the beam \"{}\" has neither mass nor weight, in spite of its density: add mass = \"consistent\", or "
                       "mass = \"none\" where other parts stand for it",
-                      beam.where("density").file, beam.where("density").line, beam.text("name")));
+                      beam.where("density").file, beam.where("density").line, beam.name.name));
 }
 
 /// Static stages apply what is constant, and motions as they are at t = 0.

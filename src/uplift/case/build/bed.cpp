@@ -41,7 +41,7 @@ std::unique_ptr<const FootingOnSoil> soil_of(const CaseFooting& footing) {
   if (!footing.soil) return nullptr;
   Footprint footprint;
   footprint.dimension = footing.length ? 3 : 2;
-  footprint.shape = footing.soil->has("rock_depth") && !footing.length ? Footprint::Shape::strip : Footprint::Shape::rectangle;
+  footprint.shape = footing.soil_on_rock && !footing.length ? Footprint::Shape::strip : Footprint::Shape::rectangle;
   footprint.width = footing.width;
   footprint.length = footing.length.value_or(footing.thickness);
   return std::make_unique<const FootingOnSoil>(footing_on_soil(*footing.soil, footprint));

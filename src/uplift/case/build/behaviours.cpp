@@ -1,5 +1,7 @@
 #include "uplift/case/build/behaviours.h"
 
+#include "uplift/laws/stated.h"
+
 namespace uplift {
 
 /// Values as they would be read from a file again, with one number replaced.
@@ -26,7 +28,7 @@ Values bonded_behaviour(const Values& like, const std::vector<double>& stiffness
   const auto add = [&](const char* name, auto data) { table->entries.emplace_back(name, Raw{std::move(data), like.where(), like.path()}); };
   add("type", std::string("elastic"));
   add("K_n", stiffness.back());
-  if (like.items().contains("c") && like.has("c")) add("c", like.number("c"));
+  if (const auto dashpot = stated_numbers(like).dashpot) add("c", *dashpot);
   if (stiffness.size() > 1 && stiffness.front() > 0)
     add("K_t", stiffness.front());
   else

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "uplift/case/build/model.h"
-#include "uplift/case/build/profile.h"
+#include "uplift/case/schema/profile.h"
 
 // Initial gaps at the points of an interface.
 namespace uplift {
@@ -48,7 +48,7 @@ void take_geometry(const CaseInterface& interface, std::vector<JointPoint>& poin
 void set_gaps(const CaseInterface& interface, std::vector<JointPoint>& points, const CaseNames& names) {
   if (interface.gap_of_geometry) take_geometry(interface, points, names);
   if (!interface.gap_profile) return;
-  const Profile profile(*interface.gap_profile, "gaps", names.space);
+  const Profile profile = gap_profile(*interface.gap_profile, names.space);
   std::vector<Vec3> places;
   for (const JointPoint& point : points) places.push_back(point.position);
   profile.require_overlap(places);

@@ -201,7 +201,7 @@ Joint with_points(const Joint& joint, std::vector<JointPoint> points) {
 }
 
 int components_of(const Values& behaviour, Space space) {
-  if (behaviour.items().contains("tangential")) return tangential_kind(behaviour) == "none" ? 1 : space.dimension;
+  if (const auto tangential = stated_tangential(behaviour)) return *tangential == "none" ? 1 : space.dimension;
   return behaviour.type() == "unilateral" ? 1 : space.dimension;
 }
 

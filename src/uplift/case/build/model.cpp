@@ -86,13 +86,12 @@ void add_masses(const CaseInput& input, ModelBuilder& builder, CaseNames& names,
 }
 
 /// The elements on named nodes: one for each table [[name]].
-void add_elements(const Values& root, ModelBuilder& builder, const CaseNames& names) {
-  for (const ElementEntry* entry : elements_at(ElementPlace::nodes))
-    for (const Values& table : root.tables(entry->name)) {
-      ElementSite site{names.space, names.nodes_of(names_used(table, "nodes")), {}};
-      for (const int node : site.nodes) site.positions.push_back(names.positions[static_cast<std::size_t>(node)]);
-      builder.add_element(entry->make(site, table), table.where());
-    }
+void add_elements(const CaseInput& input, ModelBuilder& builder, const CaseNames& names) {
+  for (const CaseElement& element : input.elements_at(ElementPlace::nodes)) {
+    ElementSite site{names.space, names.nodes_of(element.nodes), {}};
+    for (const int node : site.nodes) site.positions.push_back(names.positions[static_cast<std::size_t>(node)]);
+    builder.add_element(element.entry->make(site, *element.table), element.where());
+  }
 }
 
 }  // namespace
@@ -161,7 +160,7 @@ void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
   if (!read.mesh) return;
   const Mesh& mesh = read.mesh->mesh;
   const CaseTable& table = *read.input->mesh;
-  names.solids = std::make_shared<const CaseSolids>(read.values, *read.mesh);
+  names.solids = std::make_shared<const CaseSolids>(*read.input, *read.mesh);
   names.first_of_mesh = names.nodes.size();
   const std::map<int, std::string> named = named_nodes(mesh, names.nodes);
   std::size_t cells = 0;
@@ -222,7 +221,7 @@ void add_functions(const Case& read, CaseNames& names) {
 void add_structure(const Case& read, ModelBuilder& builder, CaseNames& names, const std::vector<double>& tuned, bool at_rest) {
   add_beams(read, builder, names);
   add_masses(*read.input, builder, names, tuned);
-  add_elements(read.values, builder, names);
+  add_elements(*read.input, builder, names);
   add_supports(read, builder, names, at_rest);
 }
 

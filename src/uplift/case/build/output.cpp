@@ -9,6 +9,7 @@
 #include "uplift/case/build/forces.h"
 #include "uplift/case/build/model.h"
 #include "uplift/dynamics/plastic_bulk.h"
+#include "uplift/laws/stated.h"
 
 namespace uplift {
 namespace {
@@ -83,11 +84,11 @@ std::vector<InterfaceQuantity> interface_quantities(const Interface& interface, 
   }
   if (!radiation_damping(*interface.footprint).empty())
     for (const InterfaceQuantity& each : forces_in_law(space)) made.push_back(each);
-  const auto given = [&](const char* key) { return behaviour.items().contains(key) && behaviour.has(key); };
-  if (given("V_s")) made.push_back({"bearing_utilisation", Column::bearing_utilisation, "1"});
-  if (given("V_s") && given("V_u") && behaviour.number("V_u") > behaviour.number("V_s"))
+  const StatedNumbers stated = stated_numbers(behaviour);
+  if (stated.service) made.push_back({"bearing_utilisation", Column::bearing_utilisation, "1"});
+  if (stated.service && stated.ultimate && *stated.ultimate > *stated.service)
     made.push_back({"bearing_capacity", Column::bearing_capacity, "N"});
-  if (given("friction_angle")) made.push_back({"sliding_utilisation", Column::sliding_utilisation, "1"});
+  if (stated.friction_angle) made.push_back({"sliding_utilisation", Column::sliding_utilisation, "1"});
   return made;
 }
 /// The law of an interface, or the model of a foundation, as the case states it: that of a bonded run is another one.

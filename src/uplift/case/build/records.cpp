@@ -9,6 +9,7 @@
 
 #include "uplift/base/format.h"
 #include "uplift/base/text.h"
+#include "uplift/base/units.h"
 #include "uplift/case/build/model.h"
 #include "uplift/motion/formats/convert.h"
 #include "uplift/motion/formats/read.h"
@@ -159,11 +160,14 @@ void check_motion(const Case& read, const CaseOtherMotion& motion) {
 
 std::vector<DrivenBy> motions_wanted(const Case& read) {
   std::vector<DrivenBy> wanted;
-  for (const CaseGround& ground : read.input->grounds) wanted.push_back({ground.function, MotionKind::acceleration});
+  for (const CaseGround& ground : read.input->grounds)
+    wanted.push_back({ground.function, MotionKind::acceleration, "amplitude", ground.amplitude});
   for (const CaseMotion& motion : read.input->motions)
-    if (motion.function) wanted.push_back({*motion.function, MotionKind::displacement, motion.turns});
+    if (motion.function)
+      wanted.push_back({*motion.function, MotionKind::displacement, "amplitude",
+                        parse_quantity(motion.amplitude, motion.turns ? "rad" : "m").value, motion.turns});
   for (const CaseAbsorbing& absorbing : read.input->absorbing)
-    if (absorbing.incident) wanted.push_back({absorbing.incident->function, MotionKind::velocity});
+    if (absorbing.incident) wanted.push_back({absorbing.incident->function, MotionKind::velocity, "velocity", absorbing.incident->stated});
   return wanted;
 }
 

@@ -38,6 +38,8 @@ const std::string& name_taken(const CaseOtherMotion* instead, const std::string&
 struct DrivenBy {
   NameUsed function;     // or record
   MotionKind kind;       // the quantity that it takes of a record
+  std::string_view key;  // of what multiplies the function, in the same table
+  double factor;         // and what it is there
   bool rotates = false;  // a rotation: of no record
 };
 std::vector<DrivenBy> motions_wanted(const Case&);

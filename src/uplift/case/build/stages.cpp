@@ -87,12 +87,12 @@ DecidedTexts decided_texts(const Case& read) {
   for (const CaseStage& stage : read.input->stages)
     if (!stage.statics && !stage.traction_given && stage_of(stage, {}).path_average != stage.path_average)
       decided[stage.path("traction")] = "end";
-  for (const char* tables : {"interface", "variant"})
-    for (const Values& table : read.values.tables(tables)) {
-      const Values* law = table.has("law") ? &table.part("law") : nullptr;
-      if (law != nullptr && law->items().contains("tangential") && tangential_kind(*law) != law->text("tangential"))
-        decided[law->path("tangential")] = tangential_kind(*law);
-    }
+  const auto decide = [&](const Values* law) {
+    const std::optional<std::string> kind = law != nullptr ? decided_tangential(*law) : std::nullopt;
+    if (kind) decided[law->path("tangential")] = *kind;
+  };
+  for (const CaseInterface& interface : read.input->interfaces) decide(interface.law);
+  for (const CaseVariant& variant : read.input->variants) decide(variant.law);
   return decided;
 }
 

@@ -2,8 +2,8 @@
 #include <utility>
 #include <vector>
 
-#include "uplift/case/build/profile.h"
 #include "uplift/case/mesh/mesh.h"
+#include "uplift/case/schema/profile.h"
 
 // Forces on the nodes of edges (in space: faces) of the mesh, consistent with their shape functions.
 namespace uplift {

@@ -45,7 +45,7 @@ struct SideFaces {
       fail(absorbing, "group", "faces that no interface cuts, for their free field: a row of nodes at the level of its plane",
            "a part of " + describe_cell(mesh, face));
     const CaseSolids::Solid& solid = *solids.beside(face);
-    ColumnLayer row{INFINITY, -INFINITY, type.nodes > type.corners, solid.section, solid.table->number("damping_beta")};
+    ColumnLayer row{INFINITY, -INFINITY, type.nodes > type.corners, solid.section, solid.filling->damping_beta()};
     for (int i = 0; i < type.corners; ++i) {
       row.low = std::min(row.low, place(nodes[static_cast<std::size_t>(i)])[up]);
       row.high = std::max(row.high, place(nodes[static_cast<std::size_t>(i)])[up]);
@@ -76,8 +76,8 @@ struct SideFaces {
              fmt::format("faces from {:g} m to {:g} m and from {:g} m to {:g} m", rows.back().low, rows.back().high, row.low, row.high));
       } else if (beside.back() != solids.beside(face)) {
         fail(absorbing, "group", "one solid at each height, for the free field",
-             fmt::format("{} and {} at {:g} m", in_quotes(beside.back()->table->text("group")),
-                         in_quotes(solids.beside(face)->table->text("group")), (row.low + row.high) / 2));
+             fmt::format("{} and {} at {:g} m", in_quotes(beside.back()->group()), in_quotes(solids.beside(face)->group()),
+                         (row.low + row.high) / 2));
       }
     }
     return rows;

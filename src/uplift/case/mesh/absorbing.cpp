@@ -17,11 +17,9 @@ std::shared_ptr<const TimeFunction> incident_velocity(const CaseIncident& incide
 
 namespace {
 
-/// Null: the face is whole. `made` keeps the rule of a part.
-const CellRule* rule_if_part(const CaseSolids& solids, CellId face, CellRule& made) {
-  if (!solids.mesh().part(face)) return nullptr;
-  made = rule_of_part(solids.mesh(), face);
-  return &made;
+/// The rule of a face that is filled in part.
+std::optional<CellRule> rule_if_part(const CaseSolids& solids, CellId face) {
+  return solids.mesh().part(face) ? std::optional(rule_of_part(solids.mesh(), face)) : std::nullopt;
 }
 
 /// The wave that comes in through the faces of a table: their pattern of forces, times its velocity.
@@ -32,9 +30,9 @@ void add_incident(const CaseAbsorbing& faces, const CaseIncident& incident, Mode
   std::vector<std::pair<int, double>> pattern;
   for (const CellId edge : solids.edges(faces.group)) {
     const std::vector<int> nodes = names.nodes_of_cell(edge);
-    CellRule part;
+    const std::optional<CellRule> part = rule_if_part(solids, edge);
     const AbsorbingFace face(solids.mesh().type(edge), nodes, names.coordinates,
-                             absorbing_ground(*faces.table, solids.beside(edge)->beside(), names.space), rule_if_part(solids, edge, part));
+                             absorbing_ground(*faces.table, solids.beside(edge)->beside(), names.space), part ? &*part : nullptr);
     const Vector force = face.incident(motion);
     for (Index i = 0; i < force.size(); ++i)
       if (force[i] != 0)
@@ -46,18 +44,16 @@ void add_incident(const CaseAbsorbing& faces, const CaseIncident& incident, Mode
 }  // namespace
 
 void add_faces(const Case& read, ModelBuilder& builder, const CaseNames& names) {
-  for (const ElementEntry* entry : elements_at(ElementPlace::faces))
-    for (const Values& table : read.values.tables(entry->name)) {
-      const NameUsed group = name_used(table, "group");
-      const CaseSolids& solids = names.mesh_for(group);
-      for (const CellId edge : solids.edges(group)) {
-        const std::vector<int> nodes = names.nodes_of_cell(edge);
-        CellRule part;
-        builder.add_element(entry->cover({solids.mesh().type(edge), nodes, names.coordinates, rule_if_part(solids, edge, part)}, table,
-                                         solids.beside(edge)->beside(), names.space),
-                            table.where());
-      }
+  for (const CaseElement& faces : read.input->elements_at(ElementPlace::faces)) {
+    const CaseSolids& solids = names.mesh_for(*faces.group);
+    for (const CellId edge : solids.edges(*faces.group)) {
+      const std::vector<int> nodes = names.nodes_of_cell(edge);
+      const std::optional<CellRule> part = rule_if_part(solids, edge);
+      builder.add_element(faces.entry->cover({solids.mesh().type(edge), nodes, names.coordinates, part ? &*part : nullptr}, *faces.table,
+                                             solids.beside(edge)->beside(), names.space),
+                          faces.where());
     }
+  }
   for (const CaseAbsorbing& absorbing : read.input->absorbing)
     if (absorbing.incident) add_incident(absorbing, *absorbing.incident, builder, names);
 }

@@ -9,7 +9,7 @@ namespace uplift {
 
 BeamCells::BeamCells(const Case& read, const CaseSolids* solids) : read_(read), solids_(solids) {}
 
-void BeamCells::check_use(const Values& beam, CellId cell) const {
+void BeamCells::check_use(const CaseElement& beam, CellId cell) const {
   const auto refuse_in = [&](const std::string& group, const std::string& use) {
     const auto found = solids_->mesh().groups.find(group);
     if (found != solids_->mesh().groups.end() && std::ranges::binary_search(found->second.cells, cell))
@@ -24,21 +24,21 @@ void BeamCells::check_use(const Values& beam, CellId cell) const {
     refuse_in(face.group.name, "which is absorbing too (" + in_quotes(face.group.name) + ")");
 }
 
-void BeamCells::claim(const Values& beam, const Stretch& stretch) {
+void BeamCells::claim(const CaseElement& beam, const Stretch& stretch) {
   if (stretch.along.norm() == 0)
     fail(beam, "group", "lines between different places", name(stretch.cell) + ", a part of which has no length");
   const auto [other, free] = taken_.emplace(std::minmax(stretch.a, stretch.b), &beam);
   if (!free)
     fail(beam, "group", "lines without another beam",
          name(stretch.cell) + (other->second == &beam ? ", between whose nodes the group has another line"
-                                                      : ", which is the beam " + in_quotes(other->second->text("name")) + " already"));
+                                                      : ", which is the beam " + in_quotes(other->second->name.name) + " already"));
 }
 
-std::vector<BeamCells::Stretch> BeamCells::take(const Values& beam) {
+std::vector<BeamCells::Stretch> BeamCells::take(const CaseElement& beam) {
   const Mesh& mesh = solids_->mesh();
   std::vector<Stretch> stretches;
   int number = 0;
-  for (const CellId cell : solids_->lines(name_used(beam, "group"))) {
+  for (const CellId cell : solids_->lines(*beam.group)) {
     check_use(beam, cell);
     ++number;
     const std::span<const int> nodes = mesh.cell(cell);

@@ -22,17 +22,17 @@ class BeamCells {
     Vec3 along;  // m, from a to b
   };
   /// The lines of the beam's group, in its order: a line2 is one stretch, a line3 two, from end to middle to end. Throws InputError.
-  std::vector<Stretch> take(const Values& beam);
+  std::vector<Stretch> take(const CaseElement& beam);
   /// For messages.
   std::string name(CellId cell) const { return describe_cell(solids_->mesh(), cell); }
 
  private:
-  void check_use(const Values& beam, CellId cell) const;
-  void claim(const Values& beam, const Stretch& stretch);
+  void check_use(const CaseElement& beam, CellId cell) const;
+  void claim(const CaseElement& beam, const Stretch& stretch);
 
   const Case& read_;
   const CaseSolids* solids_;
-  std::map<std::pair<int, int>, const Values*> taken_;  // by the nodes, ascending
+  std::map<std::pair<int, int>, const CaseElement*> taken_;  // by the nodes, ascending
 };
 
 /// Lines that share an end with exactly one other become one line with it: what remains ends where lines branch or stop. Closed lines end

@@ -133,8 +133,8 @@ void cut_planes(const Case& read, CaseMesh& made) {
   if (planes.empty()) return;
   sort_by_level(planes, of);
   std::vector<std::string> lines;
-  for (const Values* beam : element_tables(read.values, ElementPlace::lines))
-    if (beam->has("group")) lines.push_back(beam->text("group"));
+  for (const CaseElement& beam : read.input->elements_at(ElementPlace::lines))
+    if (beam.group) lines.push_back(beam.group->name);
   std::vector<Where> where;
   for (std::size_t i = 0; i < of.size(); ++i) {
     const CaseCut& first = *interfaces[of[i].front()].cut();

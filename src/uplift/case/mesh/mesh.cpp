@@ -89,9 +89,9 @@ std::string owner_of(const Mesh& mesh, CellId cell) {
 }
 
 /// A mesh of beams needs no solids.
-bool beams_alone(const Values& root) {
-  return element_tables(root, ElementPlace::cells).empty() &&
-         std::ranges::any_of(element_tables(root, ElementPlace::lines), [](const Values* beam) { return beam->has("group"); });
+bool beams_alone(const CaseInput& input) {
+  return input.elements_at(ElementPlace::cells).empty() &&
+         std::ranges::any_of(input.elements_at(ElementPlace::lines), [](const CaseElement& beam) { return beam.group.has_value(); });
 }
 
 /// Faces that do not lie in a plane of equal z are taken for a mesh in space, which has nothing to be solid.
@@ -110,7 +110,6 @@ void check_solid(const Mesh& mesh, const NameUsed& file) {
 }  // namespace
 
 std::shared_ptr<const CaseMesh> mesh_of_case(const Case& read, const MeshReader& read_mesh) {
-  const Values& root = read.values;
   const std::optional<CaseMeshSource>& mesh = read.input->mesh;
   if (!mesh) {
     for (const CaseInterface& interface : read.input->interfaces) {
@@ -118,7 +117,8 @@ std::shared_ptr<const CaseMesh> mesh_of_case(const Case& read, const MeshReader&
       if (key != nullptr) fail(interface, key, fmt::format("a [mesh] for the {}", key), "none");
     }
     for (const ElementPlace place : {ElementPlace::cells, ElementPlace::faces})
-      if (const auto tables = element_tables(root, place); !tables.empty()) fail(*tables.front(), "", "a [mesh] with this group", "none");
+      if (const auto& tables = read.input->elements_at(place); !tables.empty())
+        fail(tables.front(), "", "a [mesh] with this group", "none");
     return nullptr;
   }
   auto made = std::make_shared<CaseMesh>();
@@ -128,7 +128,7 @@ std::shared_ptr<const CaseMesh> mesh_of_case(const Case& read, const MeshReader&
     made->from = (std::filesystem::path(read.file).parent_path() / mesh->file->name).lexically_normal().string();
     made->mesh = read_mesh(made->from, where, mesh->name);
     check_mesh(made->mesh, {made->from, 0});
-    if (!beams_alone(root)) check_solid(made->mesh, *mesh->file);
+    if (!beams_alone(*read.input)) check_solid(made->mesh, *mesh->file);
   } else {
     made->from = "soil_box";
     made->mesh = make_soil_box(*mesh->soil_box, *mesh->box_table);
@@ -139,32 +139,30 @@ std::shared_ptr<const CaseMesh> mesh_of_case(const Case& read, const MeshReader&
   return made;
 }
 
-CaseSolids::CaseSolids(const Values& root, const CaseMesh& from)
+CaseSolids::CaseSolids(const CaseInput& input, const CaseMesh& from)
     : mesh_(&from.mesh), free_(&from.free), sides_(from.mesh, full_cells(from.mesh)) {
   const std::vector<CellId>& cells = sides_.cells();
   solid_of_.assign(cells.size(), -1);
-  for (const ElementEntry* entry : elements_at(ElementPlace::cells))
-    for (const Values& table : root.tables(entry->name)) add(*entry, table);
+  for (const CaseElement& solid : input.elements_at(ElementPlace::cells)) add(solid);
   const auto bare = std::ranges::find(solid_of_, -1);
   if (bare != solid_of_.end())
-    throw InputError(root.table("mesh").where(), "solid", "a [[solid]] for every cell of the mesh",
+    throw InputError(input.mesh->where(), "solid", "a [[solid]] for every cell of the mesh",
                      "none for " + owner_of(*mesh_, cells[static_cast<std::size_t>(bare - solid_of_.begin())]));
 }
 
-void CaseSolids::add(const ElementEntry& entry, const Values& solid) {
+void CaseSolids::add(const CaseElement& solid) {
   const std::vector<CellId>& cells = sides_.cells();
-  const Group& group = group_named(*mesh_, name_used(solid, "group"), "a group of cells");
+  const Group& group = group_named(*mesh_, *solid.group, "a group of cells");
   if (group.dimension != mesh_->dimension || group.cells.empty())
-    fail(solid, "group", "a group of cells", dimension_word(*mesh_, group.dimension));
+    fail(*solid.group, "a group of cells", dimension_word(*mesh_, group.dimension));
   for (const CellId cell : group.cells) {
     int& solid_here = solid_of_[static_cast<std::size_t>(std::ranges::lower_bound(cells, cell) - cells.begin())];
     if (solid_here >= 0)
-      fail(solid, "group", "cells without another solid",
-           fmt::format("{}, which belongs to the solid {} too", describe_cell(*mesh_, cell),
-                       in_quotes(solids_[at(solid_here)].table->text("group"))));
+      fail(*solid.group, "cells without another solid",
+           fmt::format("{}, which belongs to the solid {} too", describe_cell(*mesh_, cell), in_quotes(solids_[at(solid_here)].group())));
     solid_here = static_cast<int>(solids_.size());
   }
-  std::shared_ptr<const CellFilling> filling = entry.fill(solid, mesh_->dimension);
+  std::shared_ptr<const CellFilling> filling = solid.entry->fill(*solid.table, mesh_->dimension);
   const SolidSection section = filling->section();
   solids_.push_back({&solid, section, std::move(filling), group.cells});
 }

@@ -35,14 +35,15 @@ std::shared_ptr<const CaseMesh> mesh_of_case(const Case& read, const MeshReader&
 /// space a face.
 class CaseSolids {
  public:
-  CaseSolids(const Values& root, const CaseMesh& from);
+  CaseSolids(const CaseInput& input, const CaseMesh& from);
   const Mesh& mesh() const { return *mesh_; }
   struct Solid {
-    const Values* table;
+    const CaseElement* table;
     SolidSection section;
     std::shared_ptr<const CellFilling> filling;
     std::vector<CellId> cells;
-    FillingBeside beside() const { return {section, table->text("group")}; }
+    const std::string& group() const { return table->group->name; }
+    FillingBeside beside() const { return {section, group()}; }
   };
   const std::vector<Solid>& solids() const { return solids_; }
   /// Of a cell.
@@ -62,7 +63,7 @@ class CaseSolids {
 
  private:
   /// The cells of one table.
-  void add(const ElementEntry& entry, const Values& solid);
+  void add(const CaseElement& solid);
 
   const Mesh* mesh_;
   const std::map<std::string, std::vector<FreeFace>>* free_;

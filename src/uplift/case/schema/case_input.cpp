@@ -23,6 +23,9 @@ int dimension_of_nodes(const Values& root) {
 CaseInput input_of_mesh(const Values& root) {
   CaseInput made;
   if (const Values* mesh = table_if(root, "mesh")) made.mesh = case_mesh_source(*mesh);
+  for (const ElementEntry* entry : element_catalog())
+    for (const Values& table : root.tables(entry->name))
+      made.elements[static_cast<std::size_t>(entry->place)].push_back(case_element(table, *entry));
   made.absorbing = all(root, "absorbing", case_absorbing);
   made.ties = all(root, "tie", case_tie);
   made.interfaces = all(root, "interface", case_interface);

@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+
 #include "uplift/case/schema/analysis_sections.h"
 #include "uplift/case/schema/comparison_sections.h"
 #include "uplift/case/schema/interface_sections.h"
@@ -14,6 +16,8 @@ struct Mesh;
 /// never to the values themselves, which move with the case.
 struct CaseInput {
   std::optional<CaseMeshSource> mesh;
+  std::array<std::vector<CaseElement>, 4> elements;  // by their place
+  const std::vector<CaseElement>& elements_at(ElementPlace place) const { return elements[static_cast<std::size_t>(place)]; }
   std::vector<CaseAbsorbing> absorbing;
   std::vector<CaseTie> ties;
   std::vector<CaseInterface> interfaces;
@@ -39,7 +43,7 @@ struct CaseInput {
   std::string title, description;
   bool bonded = true;
   const Values *method = nullptr, *impact = nullptr;  // null: not stated
-  const Values* solver;
+  const Values* solver = nullptr;
   std::optional<CaseDamping> damping;
   CaseVerdict verdict;
   std::string interface_solver;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "uplift/case/build/profile.h"
+#include "uplift/case/schema/profile.h"
 
 namespace uplift {
 namespace {
@@ -70,7 +70,8 @@ CaseFooting case_footing(const Values& table) {
           vector_used(table, "offset"),
           vector_used(table, "normal"),
           bed ? std::optional(case_bed(*bed)) : std::nullopt,
-          soil};
+          soil,
+          soil != nullptr && soil->has("rock_depth")};
 }
 
 const Section& pairs_section() {

@@ -24,6 +24,7 @@ struct CaseFooting : CaseTable {
   std::optional<VectorUsed> offset, normal;
   std::optional<CaseBed> bed;
   const Values* soil;  // null: none
+  bool soil_on_rock;
 };
 struct CasePairs : CaseTable {
   std::vector<NameUsed> upper, lower;

@@ -141,6 +141,7 @@ CaseAbsorbing case_absorbing(const Values& table) {
                      wave,
                      incident->number("azimuth"),
                      incoming * incident->number("velocity"),
+                     incident->number("velocity"),
                      name_used(*incident, "function")};
   }
   return made;

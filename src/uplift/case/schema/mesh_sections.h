@@ -34,6 +34,7 @@ struct CaseIncident : CaseTable {
   std::string wave_word;
   double azimuth;   // rad
   double velocity;  // m/s of the incoming wave alone, that the function multiplies
+  double stated;    // m/s, of this or of the outcrop
   NameUsed function;
 };
 /// [[absorbing]], which elements/absorbing_entry.cpp declares.

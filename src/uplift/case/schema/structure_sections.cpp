@@ -74,6 +74,14 @@ const std::vector<Section>& element_sections(ElementPlace place) {
   return all[static_cast<std::size_t>(place)];
 }
 
+CaseElement case_element(const Values& table, const ElementEntry& entry) {
+  using enum ElementPlace;
+  if (entry.place == nodes) return {{&table}, &entry, names_used(table, "nodes"), {}, {}};
+  if (entry.place != lines) return {{&table}, &entry, {}, name_used(table, "group"), {}};
+  first_of_two(table, "nodes", "group");
+  return {{&table}, &entry, names_used(table, "nodes"), name_if(table, "group"), name_used(table, "name"), table.integer("elements")};
+}
+
 const Section& rigid_section() {
   static const Section s{
       "rigid", "a rigid body (a footing): its nodes follow the master node exactly",
@@ -189,7 +197,8 @@ const Section& function_section() {
 }
 
 CaseFunction case_function(const Values& table) {
-  return {{&table}, name_used(table, "name"), &table.part("shape")};
+  const Values& shape = table.part("shape");
+  return {{&table}, name_used(table, "name"), &shape, shape.items().contains("file") ? name_if(shape, "file") : std::nullopt};
 }
 
 const Section& load_section() {
@@ -241,7 +250,7 @@ CaseLoad case_load(const Values& table, Space space) {
   if (found.empty()) fail(table, "", "one of pressure, traction, force on a group", "none");
   if (const Values* profile = table_if(table, "profile")) {
     if (load.force) fail(*profile, "", "profile with pressure or traction", "profile with force");
-    load.profile.emplace(*profile, "factors", space);
+    load.profile = load_profile(*profile, space);
   }
   return load;
 }

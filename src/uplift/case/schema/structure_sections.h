@@ -1,6 +1,6 @@
 #pragma once
-#include "uplift/case/build/profile.h"
 #include "uplift/case/schema/case_table.h"
+#include "uplift/case/schema/profile.h"
 #include "uplift/elements/element_entry.h"
 
 // The structure, its supports, motions and loads: declarations, used by case/schema/sections.cpp alone, and what their tables are read
@@ -25,6 +25,16 @@ CaseMass case_mass(const Values&, Space);
 
 /// A table [[name]] for each element of the catalog that stands at one kind of place.
 const std::vector<Section>& element_sections(ElementPlace place);
+/// Where the elements of such a table stand. All other keys are for its entry.
+struct CaseElement : CaseTable {
+  const ElementEntry* entry;
+  std::vector<NameUsed> nodes;
+  std::optional<NameUsed> group;  // of the mesh
+  // of elements on lines, which have either two nodes or a group
+  NameUsed name;
+  int pieces = 1;  // elements of each straight stretch
+};
+CaseElement case_element(const Values&, const ElementEntry& entry);
 
 const Section& rigid_section();
 struct CaseBody : CaseTable {
@@ -74,6 +84,7 @@ const Section& function_section();
 struct CaseFunction : CaseTable {
   NameUsed name;
   const Values* shape;
+  std::optional<NameUsed> file;  // that the shape reads
 };
 CaseFunction case_function(const Values&);
 

@@ -191,6 +191,11 @@ std::unique_ptr<const BulkLaw> made(const BulkLawContext& solid, const Values& v
 
 }  // namespace
 
+const std::string* fit_too_strong(const Values& law) {
+  if (law.type() != "drucker_prager" || law.number("friction_angle") > 0 || law.text("fit") == "plane_strain") return nullptr;
+  return &law.text("fit");
+}
+
 const BulkLawEntry& entry_bulk_law_drucker_prager() {
   static const BulkLawEntry entry{
       {.name = "drucker_prager",

@@ -59,4 +59,7 @@ class DruckerPrager final : public BulkLaw {
   double eta_, eta_bar_, xi_;
 };
 
+/// The `fit` of a law of this type that bears too much in plane strain, without friction: a circle around Tresca's hexagon; null: none.
+const std::string* fit_too_strong(const Values& law);
+
 }  // namespace uplift

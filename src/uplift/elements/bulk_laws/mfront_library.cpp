@@ -149,8 +149,12 @@ int MfrontBehaviour::num_variables() const {
   return sum;
 }
 
+std::filesystem::path library_of(const Values& law) {
+  return law.items().contains("library") ? std::filesystem::path(path_beside(law.where("library"), law.text("library"))) : "";
+}
+
 MfrontBehaviour load_mfront(const Values& law, int dimension) {
-  const std::filesystem::path path = path_beside(law.where("library"), law.text("library"));
+  const std::filesystem::path path = library_of(law);
   MfrontBehaviour made;
   made.name = law.text("behaviour");
   made.library = open_library(law, path);

@@ -5,15 +5,15 @@
 
 namespace uplift {
 
-void BeamFrames::add(const Values& beam, const CaseSolids& solids, const BuiltCase& built, const FieldMesh& block) {
+void BeamFrames::add(const CaseElement& beam, const CaseSolids& solids, const BuiltCase& built, const FieldMesh& block) {
   space_ = built.model.space;
   // The elements of a beam follow its lines in the order of the group: the same number for each, twice as many where a line has a node in
   // its middle.
-  const auto line = std::ranges::find(built.beams, beam.text("name"), &BeamLine::name);
+  const auto line = std::ranges::find(built.beams, beam.name.name, &BeamLine::name);
   std::map<CellId, std::pair<int, double>> middle;  // element, share of its length
   int next = line->first_element;
-  for (const CellId cell : solids.lines(name_used(beam, "group"))) {
-    const int elements = beam.integer("elements") * (solids.mesh().cell(cell).size() == 3 ? 2 : 1);
+  for (const CellId cell : solids.lines(*beam.group)) {
+    const int elements = beam.pieces * (solids.mesh().cell(cell).size() == 3 ? 2 : 1);
     middle[cell] = elements % 2 == 0 ? std::pair(next + elements / 2 - 1, 1.0) : std::pair(next + elements / 2, 0.5);
     next += elements;
   }

@@ -36,9 +36,9 @@ const Case& with_mesh(const CaseFields& fields, const Case& read) {
 /// Groups with a solid or a beam that are wanted, in this order.
 std::vector<std::string> wanted_groups(const CaseFields& fields, const Case& read) {
   std::vector<std::string> known;
-  for (const Values* solid : element_tables(read.values, ElementPlace::cells)) known.push_back(solid->text("group"));
-  for (const Values* beam : element_tables(read.values, ElementPlace::lines))
-    if (beam->has("group")) known.push_back(beam->text("group"));
+  for (const CaseElement& solid : read.input->elements_at(ElementPlace::cells)) known.push_back(solid.group->name);
+  for (const CaseElement& beam : read.input->elements_at(ElementPlace::lines))
+    if (beam.group) known.push_back(beam.group->name);
   const std::vector<std::string> asked = fields.groups.value_or(known);
   for (const std::string& group : asked)
     if (std::ranges::find(known, group) == known.end()) fail(fields, "groups", known, group);
@@ -48,9 +48,9 @@ std::vector<std::string> wanted_groups(const CaseFields& fields, const Case& rea
   return known;
 }
 
-const Values& beam_of(const Case& read, const std::string& group) {
-  const std::vector<const Values*> beams = element_tables(read.values, ElementPlace::lines);
-  return **std::ranges::find_if(beams, [&](const Values* beam) { return beam->has("group") && beam->text("group") == group; });
+const CaseElement& beam_of(const Case& read, const std::string& group) {
+  return *std::ranges::find_if(read.input->elements_at(ElementPlace::lines),
+                               [&](const CaseElement& beam) { return beam.group && beam.group->name == group; });
 }
 
 /// The elements of every solid of the case. They were made solid after solid, cell after cell.
@@ -83,7 +83,7 @@ void check_quantities(const CaseFields& fields, const std::vector<std::vector<co
 
 RunFrames::RunFrames(const CaseFields& fields, const Case& read, const BuiltCase& built)
     : model_(&built.model), quantities_(fields.quantities), interfaces_(with_mesh(fields, read), built) {
-  const CaseSolids solids(read.values, *read.mesh);
+  const CaseSolids solids(*read.input, *read.mesh);
   const Mesh& mesh = solids.mesh();
   const std::vector<std::vector<const Element*>> elements = elements_of(solids, *model_);
   check_quantities(fields, elements);
@@ -93,8 +93,7 @@ RunFrames::RunFrames(const CaseFields& fields, const Case& read, const BuiltCase
     CellMark& mark = blocks_.back().marks.front();  // programs that put the blocks together tell them apart by it
     mark.values.assign(mark.values.size(), static_cast<int>(k));
     mark.meanings = groups;
-    const auto solid =
-        std::ranges::find(solids.solids(), groups[k], [](const CaseSolids::Solid& each) { return each.table->text("group"); });
+    const auto solid = std::ranges::find(solids.solids(), groups[k], &CaseSolids::Solid::group);
     if (solid == solids.solids().end()) {  // a beam: these come last
       if (wants("section_forces")) beams_.add(beam_of(read, groups[k]), solids, built, blocks_.back());
       continue;

@@ -54,7 +54,7 @@ class InterfaceFrames {
 class BeamFrames {
  public:
   /// Takes the beam of a group; `block` is its mesh.
-  void add(const Values& beam, const CaseSolids& solids, const BuiltCase& built, const FieldMesh& block);
+  void add(const CaseElement& beam, const CaseSolids& solids, const BuiltCase& built, const FieldMesh& block);
   std::size_t beams() const { return first_.size(); }
   /// Component after component, of all lines of all beams; for a ForceMeter.
   const std::vector<const ForceQuantity*>& quantities() const { return quantities_; }

@@ -10,8 +10,6 @@ namespace uplift {
 /// last position it keeps the values there.
 class Profile {
  public:
-  /// `values`: the key of the values in the table. Throws InputError.
-  Profile(const Values& table, std::string_view values, Space space);
   double at(const Vec3& position) const;
   /// Throws InputError when all positions lie on one side of these places: the profile would do nothing.
   void require_overlap(const std::vector<Vec3>& places) const;
@@ -19,6 +17,10 @@ class Profile {
   bool bends_within(const std::vector<Vec3>& places) const;
 
  private:
+  friend Profile load_profile(const Values&, Space);
+  friend Profile gap_profile(const Values&, Space);
+  /// `values`: the key of the values in the table. Throws InputError.
+  Profile(const Values& table, std::string_view values, Space space);
   double coordinate(const Vec3& position) const { return axis_ < 0 ? (position - centre_).norm() : position[axis_]; }
   const Values* table_;
   int axis_ = -1;  // -1: distance from the centre
@@ -28,7 +30,9 @@ class Profile {
 
 /// Factors of a load.
 const Section& load_profile_section();
-/// Initial gaps of an interface.
+Profile load_profile(const Values&, Space);
+/// Initial gaps of an interface [m].
 const Section& gap_profile_section();
+Profile gap_profile(const Values&, Space);
 
 }  // namespace uplift

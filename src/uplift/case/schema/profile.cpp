@@ -1,4 +1,4 @@
-#include "uplift/case/build/profile.h"
+#include "uplift/case/schema/profile.h"
 
 #include <fmt/format.h>
 
@@ -30,6 +30,14 @@ const Section& gap_profile_section() {
       "gap_profile", "initial gaps that vary over the interface: linear between the positions, constant beyond the first and the last one",
       profile_fields(numbers("gaps", "m", "initial gap at each position"))};
   return s;
+}
+
+Profile load_profile(const Values& table, Space space) {
+  return {table, "factors", space};
+}
+
+Profile gap_profile(const Values& table, Space space) {
+  return {table, "gaps", space};
 }
 
 Profile::Profile(const Values& table, std::string_view values, Space space) : table_(&table) {
