@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A file may include only its own layer and layers to its left; Eigen is named in src/uplift/math only; nobody prints or exits but the command line.
-The tables of a case are read in case/schema alone: others use Case::input. Sections and equations of docs/theory that sources and tests cite
-exist."""
+A table of a file is read where its keys are declared: others use the structs of the folders "schema" (Case::input, StudyPlan). Sections and
+equations of docs/theory that sources and tests cite exist."""
 import pathlib
 import re
 import sys
@@ -9,11 +9,13 @@ import sys
 ORDER = "base math statistics mesh laws elements interface model linear contact dynamics reduction motion run case verdict study io session capi ensemble cli distributed".split()
 ROOT = pathlib.Path(__file__).resolve().parent.parent / "src" / "uplift"
 
-# Who takes a case from Case::input, and where tables are still asked for by their name: declared in the same file, or of elements and records.
-TAKES_INPUT = ("case/", "verdict/", "study/trust", "io/", "session/", "capi/", "ensemble/", "cli/")
-READS_TABLES = ("case/schema/", "case/build/criteria.cpp", "case/build/records.cpp", "case/build/model.cpp", "case/read.cpp", "case/mesh/mesh.cpp",
-                "case/advice/warnings.cpp", "case/advice/input_warnings.cpp", "cli/soil.cpp")
-READ_BY_NAME = re.compile(r"(\b(values|root|root_)(\.|->)(number|integer|flag|text|texts|numbers|table|tables|part|has|given)\(|table_if\([\w.>-]*(values|root),\s*)\"")
+# A key of a table is read by its name where it is declared. Up to the layer of motions that is a folder of parts: a law reads its own
+# parameters, and those that the laws of the folder have in common. From the layer of cases on it is a folder "schema", with the structs that
+# everyone else uses, or the file that declares the key itself.
+KEY_READ = re.compile(r'(?:\.|->)(?:number|integer|flag|text|texts|numbers|table|tables|part|has|given|is_word)\("([A-Za-z]\w*)"\)'
+                      r'|\b(?:\w+_if|names?_used|vector_(?:of|used)|text_or|first_of_two)\([\w.>*()-]+, "(\w+)"|\bitems\(\)\.contains\("(\w+)"\)')
+KEY_DECLARED = re.compile(r'\b(?:number|integer|flag|text|choice|numbers|vector|texts|table|tables|named|part|quantity)\(\s*"(\w+)"\s*,')
+DECLARED_FOR = {"distributed": "linear"}  # the solver of uplift-mpi, which the program without it knows too
 
 theory = (ROOT.parent.parent / "docs" / "theory" / "README.md").read_text()
 sections = set(re.findall(r"^## (\d+)\.", theory, re.M))
@@ -38,6 +40,10 @@ for folder in ("src", "tests"):
             cited += 1
             if number not in (sections if kind == "section" else equations):
                 mistakes.append(f"{path.relative_to(ROOT.parent.parent)}: cites {kind} {number} of docs/theory, which does not exist")
+declared = {}  # keys by file and by folder
+for path in ROOT.rglob("*.cpp"):
+    for place in (path, path.parent):
+        declared.setdefault(place, set()).update(KEY_DECLARED.findall(path.read_text()))
 for path in sorted(ROOT.rglob("*")):
     if path.suffix not in (".h", ".cpp"):
         continue
@@ -46,6 +52,8 @@ for path in sorted(ROOT.rglob("*")):
         mistakes.append(f"{path.relative_to(ROOT)}: \"{layer}\" is not a layer ({' '.join(ORDER)})")
         continue
     lines = path.read_text().splitlines()
+    of_parts = ORDER.index(layer) < ORDER.index("case") or layer in DECLARED_FOR
+    known_keys = declared.get(ROOT / DECLARED_FOR.get(layer, "") if layer in DECLARED_FOR else path.parent if of_parts else path, set())
     for number, line in enumerate(lines, 1):
         place = f"src/uplift/{path.relative_to(ROOT)}:{number}"
         include = re.match(r'\s*#include "uplift/([a-z]+)/', line)
@@ -53,9 +61,9 @@ for path in sorted(ROOT.rglob("*")):
             mistakes.append(f"{place}: layer {layer} includes {include.group(1)}, which is to its right")
         if re.match(r"\s*#include <(Eigen|unsupported/Eigen)", line) and layer != "math":
             mistakes.append(f"{place}: Eigen is included outside math")
-        inside = str(path.relative_to(ROOT))
-        if inside.startswith(TAKES_INPUT) and not inside.startswith(READS_TABLES) and READ_BY_NAME.search(line):
-            mistakes.append(f"{place}: a table of the case is read by its name; Case::input has its members (case/schema)")
+        for key in (next(filter(None, found)) for found in KEY_READ.findall(line)):
+            if path.parent.name != "schema" and layer != "base" and key not in known_keys:
+                mistakes.append(f"{place}: \"{key}\" is read by its name where it is not declared; Case::input or StudyPlan has its member (folders schema)")
         if layer not in ("cli",) and re.search(r"std::(cout|cerr|exit|abort)\b|\bprintf\(|fmt::print\(", line):
             mistakes.append(f"{place}: the library prints or exits")
         following = lines[number] if number < len(lines) else ""

@@ -18,7 +18,7 @@
 #include "uplift/motion/generate.h"
 #include "uplift/motion/processing/processing.h"
 #include "uplift/motion/target.h"
-#include "uplift/study/study_plan.h"
+#include "uplift/study/schema/study_plan.h"
 
 namespace uplift::cli {
 namespace {

@@ -39,7 +39,7 @@ Study open_study(const std::string& given) {
   std::error_code error;
   if (fs::is_directory(study.case_file, error)) study.case_file = (fs::path(study.case_file) / "case.toml").lexically_normal().string();
   if (!fs::is_regular_file(study.case_file, error))
-    fail(plan.values, "case", "a case file, or a folder with case.toml", escaped(plan.case_file));
+    fail(*plan.values, "case", "a case file, or a folder with case.toml", escaped(plan.case_file));
   const std::string case_text = read_file(study.case_file);
   study.case_hash = sha256(case_text);
   StudyPlan located = plan;

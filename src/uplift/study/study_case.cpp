@@ -25,7 +25,7 @@ namespace {
 // ---- motions ----
 
 /// The record whose intensity is that of the motion; null where a function drives.
-const CaseRecord* measured_record(const StudyCase& study, const CaseOtherMotion* given, const Values& place) {
+const CaseRecord* measured_record(const StudyCase& study, const CaseOtherMotion* given, const CaseTable& place) {
   std::vector<std::string> driving;
   for (const DrivenBy& each : motions_wanted(study.read)) driving.push_back(each.function.name);
   std::string name = study.plan.intensity.of;
@@ -78,11 +78,11 @@ StudyMotion motion_of(const StudyCase& study, const CaseOtherMotion* given) {
   motion.name = given ? given->name.name : "own";
   motion.label = given ? given->label : "motion of the case";
   motion.hash = motion_hash(study, given);
-  const Values& place = study.plan.values.table("intensity");
+  const CaseTable& place = study.plan.intensity.given;
   const CaseRecord* record = measured_record(study, given, place);
   if (!record) {
     if (study.plan.intensity.kind != IntensityMeasure::Kind::factor)
-      fail(place, "measure", "\"factor\" for a motion that is a function, or a record in its place", in_quotes(place.text("measure")));
+      fail(place, "measure", "\"factor\" for a motion that is a function, or a record in its place", in_quotes(study.plan.intensity.word));
     return motion;
   }
   const Motion& acceleration = *giving(record->history, MotionKind::acceleration)->motion();
@@ -99,24 +99,22 @@ StudyMotion motion_of(const StudyCase& study, const CaseOtherMotion* given) {
 
 /// Units of the variables, and the distributions of their values.
 void resolve_variables(StudyCase& study) {
-  const std::vector<Values>& tables = study.plan.values.tables("variable");
   std::set<std::string> known;
-  for (std::size_t k = 0; k < study.plan.variables.size(); ++k) {
-    StudyVariable& variable = study.plan.variables[k];
+  for (StudyVariable& variable : study.plan.variables) {
     for (const std::string& path : variable.paths) {
       const std::optional<NumberAt> number = number_at(study.read.values, path);
-      if (!number) fail(tables[k], "paths", "paths of numbers of the case, as \"interface[0].law.K_n\"", in_quotes(path));
+      if (!number) fail(variable.given, "paths", "paths of numbers of the case, as \"interface[0].law.K_n\"", in_quotes(path));
       if (path.starts_with("record") || path.starts_with("compare"))
-        fail(tables[k], "paths", "no number of a record: a study has motions", in_quotes(path));
-      if (variable.is_factor && number->value == 0) fail(tables[k], "paths", "numbers that are not 0, for a factor", in_quotes(path));
-      if (!known.insert(path).second) fail(tables[k], "paths", "numbers that are set once", in_quotes(path) + " again");
+        fail(variable.given, "paths", "no number of a record: a study has motions", in_quotes(path));
+      if (variable.is_factor && number->value == 0) fail(variable.given, "paths", "numbers that are not 0, for a factor", in_quotes(path));
+      if (!known.insert(path).second) fail(variable.given, "paths", "numbers that are set once", in_quotes(path) + " again");
       study.edits_mesh = study.edits_mesh || path.starts_with("mesh") || path.find(".cut") != path.npos;
       const std::string unit(variable.is_factor ? "1" : number->field->unit);
       if (path != variable.paths.front() && unit != variable.unit)
-        fail(tables[k], "paths", fmt::format("numbers of the unit {}", variable.unit), in_quotes(path));
+        fail(variable.given, "paths", fmt::format("numbers of the unit {}", variable.unit), in_quotes(path));
       variable.unit = unit;
     }
-    variable.distribution = distribution_of(tables[k], variable.unit);
+    variable.distribution = distribution_of(variable);
   }
 }
 
@@ -131,7 +129,7 @@ Matrix draw(const StudyPlan& plan) {
         target(static_cast<Index>(each.second), static_cast<Index>(each.first)) = each.value;
   OrRefused<LatinHypercube> drawn = latin_hypercube(plan.samples, target, plan.seed);
   if (const Refused* refused = std::get_if<Refused>(&drawn))
-    fail(plan.values.tables("correlation").front(), "", "correlations that can be reached", refused->reason);
+    fail(plan.correlations.front().given, "", "correlations that can be reached", refused->reason);
   return std::get<LatinHypercube>(drawn).probability;
 }
 
@@ -167,7 +165,7 @@ void check_samples(const StudyCase& study) {
       try {
         check(edited(study.raw, own), case_section());
       } catch (const InputError& error) {
-        fail(study.plan.values.tables("variable")[k], "distribution", "values that the case takes",
+        fail(study.plan.variables[k].given, "distribution", "values that the case takes",
              fmt::format("sample {}: {}", at - study.samples.begin(), error.what()));
       }
     }
@@ -177,10 +175,9 @@ void check_samples(const StudyCase& study) {
 /// The numbers of limits are those of an interface, a foundation or a beam that the case has.
 void check_limits(const StudyCase& study) {
   const CaseInput& input = *study.read.input;
-  for (std::size_t k = 0; k < study.plan.limits.size(); ++k) {
-    const StudyLimit& limit = study.plan.limits[k];
+  for (const StudyLimit& limit : study.plan.limits) {
     if (limit.quantity == nullptr || (limit.of.empty() && !limit.quantity->of_beam)) continue;
-    const Values& table = study.plan.values.tables("limit")[k];
+    const CaseTable& table = limit.given;
     std::vector<std::string> known;
     if (limit.quantity->of_beam) {
       for (const CaseEnvelope& envelope : input.output.envelopes) known.push_back(envelope.beam.name);
@@ -220,7 +217,7 @@ StudyCase study_case(const StudyPlan& plan, const Raw& case_raw, const MeshReade
   const Raw raw = with_reduced_model(case_raw, plan.raw);
   StudyCase study;
   study.plan = plan;
-  study.raw = with_motions(raw, plan.values, plan.raw);
+  study.raw = with_motions(raw, plan.many_motions, plan.raw);
   study.read_mesh = read_mesh;
   const GeneratedRecords generated(study.raw, motions);
   if (generated.any()) {

@@ -5,7 +5,7 @@
 #include "uplift/case/case.h"
 #include "uplift/motion/intensity.h"
 #include "uplift/study/case_edit.h"
-#include "uplift/study/study_plan.h"
+#include "uplift/study/schema/study_plan.h"
 
 namespace uplift {
 

@@ -8,7 +8,6 @@
 
 #include "uplift/base/file.h"
 #include "uplift/base/text.h"
-#include "uplift/base/units.h"
 #include "uplift/case/build/records.h"
 #include "uplift/case/schema/case_input.h"
 #include "uplift/study/case_edit.h"
@@ -51,33 +50,20 @@ Raw texts_raw(const std::vector<std::string>& texts, const Raw& like) {
 /// One [[motions]] of a plan, to be written out as records and motions of the case.
 class ManyMotions {
  public:
-  ManyMotions(const Values& values, const Raw& raw) : values_(values), raw_(raw), replace_(values.texts("replace")) {
-    if (replace_.empty()) fail(values, "replace", "one name at least", "none");
-    const bool files = first_of_two(values, "files", "count");
-    const std::vector<Values>& generate = values.tables("generate");
-    if (!files && generate.size() != replace_.size())
-      fail(values, "generate", fmt::format("as many as names in replace ({})", replace_.size()), fmt::format("{}", generate.size()));
-    if (files && !generate.empty()) fail(values, "generate", "either files or generate", "both");
-    const std::size_t given = values.texts("files").size();
-    if (files && (given == 0 || given % replace_.size() != 0))
-      fail(values, "files", fmt::format("a file for each of the {} names in replace, motion by motion", replace_.size()),
-           fmt::format("{} files", given));
-    count_ = files ? given / replace_.size() : static_cast<std::size_t>(values.integer("count"));
-  }
+  ManyMotions(const StudyManyMotions& given, const Raw& raw) : given_(given), raw_(raw) {}
 
   void add(RawList& records, RawList& motions) const {
-    for (std::size_t i = 0; i < count_; ++i) {
-      const std::string name = fmt::format("{}-{}", values_.text("name"), i + 1);
+    for (std::size_t i = 0; i < given_.count; ++i) {
+      const std::string name = fmt::format("{}-{}", given_.name, i + 1);
       std::vector<std::string> by;
-      for (std::size_t c = 0; c < replace_.size(); ++c) {
-        by.push_back(replace_.size() == 1 ? name : fmt::format("{}-{}", name, c + 1));
+      for (std::size_t c = 0; c < given_.replace.size(); ++c) {
+        by.push_back(given_.replace.size() == 1 ? name : fmt::format("{}-{}", name, c + 1));
         records.push_back(record(by.back(), i, c));
       }
       RawTable motion;
       set(motion, "name", text(name));
-      if (!values_.texts("files").empty())
-        set(motion, "label", text(std::filesystem::path(values_.texts("files")[i * replace_.size()]).stem().string()));
-      set(motion, "replace", texts_raw(replace_, raw_));
+      if (!given_.files.empty()) set(motion, "label", text(std::filesystem::path(given_.files[i * given_.replace.size()]).stem().string()));
+      set(motion, "replace", texts_raw(given_.replace, raw_));
       set(motion, "by", texts_raw(by, raw_));
       motions.push_back(as_raw(std::move(motion), raw_));
     }
@@ -92,73 +78,62 @@ class ManyMotions {
              entry.first == "generate";
     });
     set(made, "name", text(name));
-    if (!values_.texts("files").empty()) {
-      set(made, "file", text(values_.texts("files")[motion * replace_.size() + component]));
+    if (!given_.files.empty()) {
+      set(made, "file", text(given_.files[motion * given_.replace.size() + component]));
     } else {
       RawTable generate = copy_of(list_at(copy_of(raw_), "generate")[component]);
-      const std::int64_t seed = values_.tables("generate")[component].integer("seed");
+      const std::int64_t seed = given_.seeds[component];
       set(generate, "seed", {seed + static_cast<std::int64_t>(motion), raw_.where, raw_.path + ".generate.seed"});
       set(made, "generate", as_raw(std::move(generate), raw_));
     }
     return as_raw(std::move(made), raw_);
   }
 
-  const Values& values_;
+  const StudyManyMotions& given_;
   const Raw& raw_;
-  const std::vector<std::string>& replace_;
-  std::size_t count_ = 0;
 };
 
 // ---- one motion ----
 
-std::string absolute_beside(const Values& table, std::string_view key) {
-  return std::filesystem::absolute(path_beside(table.where(key), table.text(key))).lexically_normal().string();
+std::string absolute_beside(const Where& where, const std::string& file) {
+  return std::filesystem::absolute(path_beside(where, file)).lexically_normal().string();
 }
 
 /// Every path of a file in the case, absolute.
 std::vector<CaseEdit> absolute_files(const Case& read) {
-  const Values& root = read.values;
+  const CaseInput& input = *read.input;
   std::vector<CaseEdit> edits;
-  const auto add = [&](const Values& table, const char* key) {
-    if (table.items().contains(key) && table.has(key)) edits.push_back({table.path(key), absolute_beside(table, key)});
+  const auto add = [&](const std::string& path, const std::optional<NameUsed>& file) {
+    if (file) edits.push_back({path, absolute_beside(file->where(), file->name)});
   };
-  const std::vector<CaseRecordSource>& records = read.input->records;
-  for (std::size_t i = 0; i < records.size(); ++i)  // those of the plan have a path there
-    if (records[i].file) edits.push_back({fmt::format("record[{}].file", i), absolute_beside(*records[i].table, "file")});
-  for (const CaseFunction& function : read.input->functions) add(*function.shape, "file");
-  if (read.input->mesh) add(*read.input->mesh->table, "file");
-  if (read.input->reduced_model) edits.push_back({"reduced_model", absolute_beside(root, "reduced_model")});
+  for (std::size_t i = 0; i < input.records.size(); ++i)  // those of the plan have a path there
+    add(fmt::format("record[{}].file", i), input.records[i].file);
+  for (const CaseFunction& function : input.functions) add(function.shape->path("file"), function.file);
+  if (input.mesh) add(input.mesh->path("file"), input.mesh->file);
+  if (input.reduced_model) edits.push_back({"reduced_model", absolute_beside(read.values.where("reduced_model"), *input.reduced_model)});
   return edits;
 }
 
-/// The amplitude of what drives by a function, times the factor.
+/// What multiplies a function that drives, times the factor.
 CaseEdit louder(const DrivenBy& place, double factor) {
-  const Values& table = *place.function.table;
-  for (const char* key : {"amplitude", "velocity"}) {
-    const auto item = table.items().find(key);
-    if (item == table.items().end()) continue;
-    if (const auto* number = std::get_if<double>(&item->second.data)) return {table.path(key), *number * factor};
-    if (std::holds_alternative<std::string>(item->second.data))
-      return {table.path(key), parse_quantity(table.text(key), place.rotates ? "rad" : "m").value * factor};
-  }
-  return {table.path("amplitude"), factor};
+  return {place.function.table->path(place.key), place.factor * factor};
 }
 
 }  // namespace
 
-Raw with_motions(const Raw& raw, const Values& plan, const Raw& plan_raw) {
+Raw with_motions(const Raw& raw, const std::vector<StudyManyMotions>& many, const Raw& plan) {
   RawTable root = copy_of(raw);
-  const RawTable given = copy_of(plan_raw);
+  const RawTable given = copy_of(plan);
   RawList records = list_at(root, "record"), motions = list_at(given, "motion");
   for (const Raw& record : list_at(given, "record")) records.push_back(record);
-  const RawList many = list_at(given, "motions");
-  for (std::size_t k = 0; k < many.size(); ++k) ManyMotions(plan.tables("motions")[k], many[k]).add(records, motions);
+  const RawList as_read = list_at(given, "motions");
+  for (std::size_t k = 0; k < many.size(); ++k) ManyMotions(many[k], as_read[k]).add(records, motions);
   if (!records.empty()) set(root, "record", {std::move(records), raw.where, "record"});
   if (!motions.empty()) {
     const Raw* old = root.find("compare");
     RawTable compare = old != nullptr ? copy_of(*old) : RawTable{};
-    set(compare, "motion", {std::move(motions), plan_raw.where, "motion"});
-    set(root, "compare", as_raw(std::move(compare), old != nullptr ? *old : plan_raw));
+    set(compare, "motion", {std::move(motions), plan.where, "motion"});
+    set(root, "compare", as_raw(std::move(compare), old != nullptr ? *old : plan));
   }
   return as_raw(std::move(root), raw);
 }

@@ -7,7 +7,7 @@
 
 #include "uplift/base/archive.h"
 #include "uplift/statistics/capacity_search.h"
-#include "uplift/study/study_plan.h"
+#include "uplift/study/schema/study_plan.h"
 #include "uplift/verdict/floor_spectra.h"
 #include "uplift/verdict/numbers.h"
 

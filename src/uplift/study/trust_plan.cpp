@@ -53,10 +53,12 @@ std::vector<std::string_view> stiffness_keys(const Values& law) {
   return keys;
 }
 
+bool has_parameter(const PartInfo& part, std::string_view key) {
+  return std::ranges::find(part.params, key, &Field::name) != part.params.end();
+}
+
 bool is_parameter_of(std::string_view law, std::string_view key) {
-  const auto behaviours = interface_behaviours();
-  const auto entry = std::ranges::find(behaviours, law, &PartInfo::name);
-  return std::ranges::find((*entry)->params, key, &Field::name) != (*entry)->params.end();
+  return has_parameter(**std::ranges::find(interface_behaviours(), law, &PartInfo::name), key);
 }
 
 /// The edits that put another law, which has the same answer, in the place of one.
@@ -271,7 +273,7 @@ class Planner {
 
   bool constrains() const { return make_part(method_catalog(), method_)->constrains(); }
   /// The method has a stiffness of its own in the place of constraints.
-  bool regularises() const { return method_.items().contains("stiffness"); }
+  bool regularises() const { return has_parameter(*method_.part_info(), "stiffness"); }
 
   const CaseInput& input_;
   const CaseTrust& trust_;

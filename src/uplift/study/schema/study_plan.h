@@ -1,10 +1,11 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "uplift/base/declare.h"
+#include "uplift/case/schema/case_table.h"
 #include "uplift/case/schema/verdict_quantities.h"
 #include "uplift/statistics/capacity_search.h"
 #include "uplift/statistics/distributions.h"
@@ -26,6 +27,8 @@ struct IntensityMeasure {
   double period = 0, damping = 0.05;  // s, ratio to the critical damping: of sa
   std::string unit = "1";             // "g_n", "m/s2", ...
   double in_si = 1;                   // of one unit
+  std::string word;                   // for the kind
+  CaseTable given;                    // [intensity]
   std::string of;                     // name in `replace` whose record is measured; empty: the first
   std::string label() const;          // "Sa(0.5 s, 5 %)"
 };
@@ -44,6 +47,7 @@ struct StudyLimit {
   const VerdictQuantity* quantity = nullptr;  // null: overturning and separation alone
   std::string of;                             // interface or beam; empty: the worst of all
   double limit = 0;                           // in the quantity's unit
+  CaseTable given = {};                       // [[limit]]; null without any
 };
 
 /// One or several numbers of the case that vary together.
@@ -53,10 +57,21 @@ struct StudyVariable {
   bool is_factor = true;                        // of the case's values; else it is their value
   Distribution distribution = Lognormal{1, 1};  // of SI values, see unit
   std::string unit = "1";                       // of the values
+  CaseTable given = {};                         // [[variable]]
 };
 struct StudyCorrelation {
   std::size_t first = 0, second = 0;  // variables
   double value = 0;
+  CaseTable given = {};  // [[correlation]]
+};
+
+/// Many motions at once, [[motions]]: from files, or generated.
+struct StudyManyMotions {
+  std::string name;  // beginning of theirs
+  std::vector<std::string> replace;
+  std::vector<std::string> files;   // those of one motion side by side; empty: they are generated
+  std::size_t count = 0;            // of motions
+  std::vector<std::int64_t> seeds;  // of the components of the first motion
 };
 
 /// What the site asks for: results of the fits, not of the runs.
@@ -68,8 +83,8 @@ struct StudySite {
 
 /// A checked plan.
 struct StudyPlan {
-  Raw raw;        // as read
-  Values values;  // of study_section()
+  Raw raw;                               // as read
+  std::shared_ptr<const Values> values;  // of study_section(); the tables of the others are in it
   std::string case_file;
   std::uint64_t seed = 1;
   IntensityMeasure intensity;
@@ -79,6 +94,7 @@ struct StudyPlan {
   int samples = 1;
   bool crossed = true;  // every sample with every motion; else sample i with motion i
   std::vector<StudyLimit> limits;
+  std::vector<StudyManyMotions> many_motions;
   StudySite site;
   bool floor_spectra = false;
   std::optional<double> timeout;  // s of one run
@@ -89,7 +105,7 @@ struct StudyPlan {
 
 /// Checks a plan on its own, without its case: distributions are read later, when the units of their values are known. Throws InputError.
 StudyPlan study_plan(const Raw& raw);
-/// The distribution of a [[variable]] whose values have this unit. Throws InputError.
-Distribution distribution_of(const Values& variable, const std::string& unit);
+/// The distribution that the table of a variable states for values of its unit. Throws InputError.
+Distribution distribution_of(const StudyVariable& variable);
 
 }  // namespace uplift
