@@ -1,7 +1,6 @@
 #include "uplift/run/recorder.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -51,14 +50,16 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
   }
   for (const CombinedRequest& request : plan.combined) {
     std::vector<std::vector<Term>>& components = combined_.emplace_back();
+    bool recorded = true;
     for (const std::vector<CombinedRequest::Term>& terms : request.components) {
       std::vector<Term>& sum = components.emplace_back();
       for (const CombinedRequest::Term& term : terms) {
         const int column = find_request(plan.requests, term.kind, term.of);
-        assert(column >= 0);
-        sum.push_back({recent_.data() + static_cast<std::size_t>(column) * apart, term.factor});
+        recorded = recorded && column >= 0;
+        if (recorded) sum.push_back({recent_.data() + static_cast<std::size_t>(column) * apart, term.factor});
       }
     }
+    if (!recorded) components.clear();
   }
   result_.combined.resize(plan.combined.size());
   if (stepper_ == nullptr) acceleration_ = Vector::Zero(model.free());
@@ -287,6 +288,7 @@ void Recorder::flush() {
 void Recorder::combine(std::size_t count) {
   constexpr double less = 1 - 1e-12;  // the exact length is only taken where it may be the largest
   for (std::size_t k = 0; k < combined_.size(); ++k) {
+    if (combined_[k].empty()) continue;  // it stays unknown
     CombinedPeak& peak = result_.combined[k];
     for (std::size_t i = 0; i < count; ++i) {
       std::array<double, 2> value{};
