@@ -5,14 +5,14 @@
 
 #include <cmath>
 
-#include "unit/verdict/verdict_support.h"
-#include "uplift/run/interface_viewer.h"
+#include "unit/verdict/strip_support.h"
 #include "uplift/verdict/base_over_time.h"
 
 namespace uplift::numbers_test {
 namespace {
 
 using namespace support;
+using namespace winkler_strip;
 
 // ---- the linear tension ratio ----
 
@@ -35,53 +35,6 @@ TEST(TensionRatio, NothingWithoutTensionAndNoAnswerFromOneHalfOn) {
 
 // ---- a rigid strip on Winkler springs ----
 
-constexpr double width = 3, modulus = 2e8, weight = 1e6, theta_u = weight / (modulus * width * width / 2);  // W/(2 k b^2)
-
-std::string strip(const std::string& more = "") {
-  return R"(title = "strip"
-[nodes]
-base = [0, 0]
-[[rigid]]
-name = "footing"
-node = "base"
-mass = 1e4
-inertia = 7500
-[[interface]]
-name = "soil"
-footing = { body = "base", width = 3, points = 4001 }
-law = { type = "springs", K_n = 2e8, K_t = 1e8, tangential = "coulomb", friction = 0.6, cohesion = "20 kPa" }
-[[load]]
-node = "base"
-force = [0, -1e6]
-[[stage]]
-type = "static"
-[[stage]]
-type = "dynamic"
-duration = 0.1
-step = 0.01
-)" + more;
-}
-
-/// What the strip looks like at a rotation, in units of theta_u: the plane that carries the weight, by the closed form.
-InterfaceView turned(const BuiltCase& built, double ratio) {
-  const Interface& interface = built.model.interfaces.front();
-  const int n = interface.batch.points, normal = interface.batch.normal();
-  const double theta = ratio * theta_u, contact = ratio > 1 ? width / std::sqrt(ratio) : width;
-  State state;
-  state.displacement = Vector::Zero(built.model.free());
-  state.opening = state.force = Vector::Zero(interface.rows());
-  for (int i = 0; i < n; ++i) {
-    const double x = interface.position[static_cast<std::size_t>(i)].x();
-    const double gap = ratio > 1 ? theta * (x + width / 2 - contact) : theta * x - weight / (modulus * width);
-    state.opening[normal + i] = gap;
-    state.force[normal + i] = modulus * std::min(gap, 0.0) * interface.area[i];
-  }
-  state.mean_force = state.force;
-  std::vector<InterfaceView> views;
-  InterfaceViewer(built.model, 1e-9, {}).look(state, views);
-  return views.front();
-}
-
 TEST(VerdictNumbersTest, WinklerStripUpTo30Percent) {
   const BuiltCase built = built_of(strip("[verdict]\nuplifted_ratio_thresholds = [0.1, 0.25, 0.5]\n"));
   std::vector<InterfaceView> views;
@@ -89,13 +42,13 @@ TEST(VerdictNumbersTest, WinklerStripUpTo30Percent) {
   for (const double ratio : {0.0, 0.5, 1.2, 1.5, most, 1.8, 1.1, 0.2}) views.push_back(turned(built, ratio));
   const VerdictNumbers numbers = numbers_of(built, run_of(views, 0.1), nullptr);
   const InterfaceVerdict& said = numbers.interfaces.at(0);
-  EXPECT_NEAR(said.weight, weight, 1e-6 * weight);
-  EXPECT_NEAR(said.mean_pressure, weight / width, 1e-6 * weight);
+  EXPECT_NEAR(said.weight, dead_load, 1e-6 * dead_load);
+  EXPECT_NEAR(said.mean_pressure, dead_load / width, 1e-6 * dead_load);
   EXPECT_NEAR(number(numbers, "max_uplifted_ratio"), 0.3, 1e-3);
   EXPECT_NEAR(*find_number(said.numbers, "max_uplifted_ratio")->time, 0.4, 1e-12);
   EXPECT_NEAR(number(numbers, "max_opening"), width * most * theta_u * 0.3, 1e-9);  // 2 b theta (1 - sqrt(theta_u/theta))
   EXPECT_NEAR(number(numbers, "toe_pressure_ratio"), 2.857143, 1e-5);
-  EXPECT_NEAR(number(numbers, "max_moment"), 1.6 * weight * width / 6, 1e-5 * weight);
+  EXPECT_NEAR(number(numbers, "max_moment"), 1.6 * dead_load * width / 6, 1e-5 * dead_load);
   EXPECT_NEAR(number(numbers, "max_eccentricity"), 1.6 / 6, 1e-5);
   EXPECT_NEAR(number(numbers, "min_overturning_safety"), 3 / 1.6, 1e-4);
   EXPECT_NEAR(number(numbers, "first_uplift"), 0.2, 1e-12);
@@ -125,7 +78,7 @@ TEST(VerdictNumbersTest, BesideTheBondedStrip) {
   const RunResult run = run_of({turned(built, 0), turned(built, 2)}, 0.1);
   // bonded, M = 2.5 M_u: pressure W/B (1 + 2.5 x/b), so the share (1 - 1/2.5)/2 pulls
   std::vector<InterfaceView> views{turned(built, 0), turned(built, 0)};
-  views[1].resultant.moment = 2.5 * weight * width / 6;
+  views[1].resultant.moment = 2.5 * dead_load * width / 6;
   views[1].tension_area = 0.3;
   const RunResult bonded = run_of(views, 0.1);
   const VerdictNumbers numbers = numbers_of(built, run, &bonded);
@@ -142,32 +95,32 @@ TEST(VerdictNumbersTest, BesideTheBondedStrip) {
 TEST(VerdictNumbersTest, SlidingSafety) {
   const BuiltCase built = built_of(strip());
   const double area = width;
-  std::vector<InterfaceView> views{view_of({.axial = -weight})};
-  views.push_back(view_of({.axial = -weight, .shear = 3e5}));
-  views.push_back(view_of({.axial = -0.5 * weight, .shear = -2.5e5}, 0.4));
-  views.push_back(view_of({.axial = -1e-4 * weight, .shear = 1e5}, 0.9));  // carries nothing: no place of the thrust, no safety
+  std::vector<InterfaceView> views{view_of({.axial = -dead_load})};
+  views.push_back(view_of({.axial = -dead_load, .shear = 3e5}));
+  views.push_back(view_of({.axial = -0.5 * dead_load, .shear = -2.5e5}, 0.4));
+  views.push_back(view_of({.axial = -1e-4 * dead_load, .shear = 1e5}, 0.9));  // carries nothing: no place of the thrust, no safety
   const RunResult run = run_of(views, 0.1);
   const std::vector<double> history = base_history(built, run, 0, BaseHistory::sliding_safety);
-  EXPECT_NEAR(history[1], (0.6 * weight + 2e4 * area) / 3e5, 1e-12);
-  EXPECT_NEAR(history[2], (0.3 * weight + 2e4 * area * 0.6) / 2.5e5, 1e-12);
+  EXPECT_NEAR(history[1], (0.6 * dead_load + 2e4 * area) / 3e5, 1e-12);
+  EXPECT_NEAR(history[2], (0.3 * dead_load + 2e4 * area * 0.6) / 2.5e5, 1e-12);
   EXPECT_TRUE(std::isnan(history[3]));
   const VerdictNumbers numbers = numbers_of(built, run, nullptr);
   EXPECT_NEAR(number(numbers, "min_sliding_safety"), history[2], 1e-15);
   EXPECT_EQ(number(numbers, "max_shear"), 3e5);
-  EXPECT_NEAR(number(numbers, "min_compression"), 1e-4 * weight, 1e-9);
+  EXPECT_NEAR(number(numbers, "min_compression"), 1e-4 * dead_load, 1e-9);
 }
 
 TEST(VerdictNumbersTest, WeightThatIsTakenAwayDrivesToo) {
   const BuiltCase built = built_of(strip());
   // stabilising W b about either toe; driving (W - N) b + |M|
-  const RunResult run = run_of({view_of({.axial = -weight}), view_of({.axial = -0.8 * weight, .moment = -0.3 * weight})}, 0.1);
+  const RunResult run = run_of({view_of({.axial = -dead_load}), view_of({.axial = -0.8 * dead_load, .moment = -0.3 * dead_load})}, 0.1);
   EXPECT_NEAR(number(numbers_of(built, run, nullptr), "min_overturning_safety"), 1.5 / (0.2 * 1.5 + 0.3), 1e-12);
 }
 
 TEST(VerdictNumbersTest, AnEccentricWeightStandsNearerToOneToe) {
   const BuiltCase built = built_of(strip());
   // at rest the thrust stands 0.5 m to the right; 0.25 m further needs (1.5 - 0.5)/0.25
-  const auto right = [](double e) { return view_of({.axial = -weight, .moment = -e * weight}); };
+  const auto right = [](double e) { return view_of({.axial = -dead_load, .moment = -e * dead_load}); };
   EXPECT_NEAR(number(numbers_of(built, run_of({right(0.5), right(0.75)}, 0.1), nullptr), "min_overturning_safety"), 4, 1e-12);
   EXPECT_NEAR(number(numbers_of(built, run_of({right(0.5), right(0.25)}, 0.1), nullptr), "min_overturning_safety"), 8, 1e-12);
 }
@@ -376,69 +329,6 @@ step = 0.01
   const BasePose pose = InterfaceViewer(built.model, 1e-9, built.plan.bases).pose(state, 0, {});
   EXPECT_NEAR(pose.settlement, 0.02, 1e-15);
   EXPECT_NEAR(pose.tilt_1, -0.02 / 4, 1e-15);  // clockwise: the right side goes down
-}
-
-// ---- criteria ----
-
-std::string with_criterion(const std::string& lines) {
-  return strip("[[verdict.criterion]]\n" + lines);
-}
-std::string refusal_of(const std::string& lines) {
-  try {
-    built_of(with_criterion(lines));
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return {};
-}
-
-TEST(VerdictCriteria, MetOrNot) {
-  const auto state = [](const std::string& quantity, const std::string& limit, RunStatus status = RunStatus::completed) {
-    const BuiltCase built = built_of(with_criterion("quantity = \"" + quantity + "\"\nlimit = " + limit + "\nsource = \"client\"\n"));
-    RunResult run = run_of({turned(built, 0), turned(built, 2)}, 0.1);
-    run.status = status;
-    const VerdictNumbers numbers = numbers_of(built, run, nullptr);
-    EXPECT_EQ(numbers.criteria.size(), 1);
-    EXPECT_EQ(numbers.criteria.at(0).criterion.source, "client");
-    return numbers.criteria.at(0).state;
-  };
-  using Result = CriterionResult::State;
-  // uplifted share 0.293; gap 2 b theta 0.293 = 1.95 mm; W b/M = 3/(3 - sqrt 2) = 1.89
-  EXPECT_EQ(state("max_uplifted_ratio", "0.3"), Result::met);
-  EXPECT_EQ(state("max_uplifted_ratio", "\"25 %\""), Result::not_met);
-  EXPECT_EQ(state("max_opening", "\"2 mm\""), Result::met);
-  EXPECT_EQ(state("max_opening", "0.0019"), Result::not_met);
-  EXPECT_EQ(state("min_overturning_safety", "1.5"), Result::met);
-  EXPECT_EQ(state("min_overturning_safety", "2"), Result::not_met);
-  EXPECT_EQ(state("min_sliding_safety", "1.1"), Result::undetermined);  // nothing pushes
-  EXPECT_EQ(state("longest_full_loss", "\"0.1 s\""), Result::met);
-  EXPECT_EQ(state("max_opening", "\"2 mm\"", RunStatus::interrupted), Result::undetermined);
-  EXPECT_EQ(state("max_opening", "\"1 mm\"", RunStatus::interrupted), Result::not_met);
-}
-
-TEST(VerdictCriteria, WhatIsRefused) {
-  EXPECT_NE(refusal_of("quantity = \"max_uplift_ratio\"\nlimit = 0.3\nsource = \"a\"\n").find("did you mean \"max_uplifted_ratio\"?"),
-            std::string::npos);
-  EXPECT_NE(
-      refusal_of("quantity = \"max_opening\"\nlimit = \"3 kN\"\nsource = \"a\"\n").find("limit: expected a length [m], found \"3 kN\""),
-      std::string::npos);
-  EXPECT_NE(refusal_of("quantity = \"max_opening\"\nlimit = 0.3\n").find("source"), std::string::npos);
-  EXPECT_NE(refusal_of("quantity = \"max_opening\"\nlimit = 0.3\nsource = \" \"\n").find("where the limit comes from"), std::string::npos);
-  EXPECT_NE(refusal_of("quantity = \"max_opening\"\nlimit = true\nsource = \"a\"\n").find("a number, or a text with a number and its unit"),
-            std::string::npos);
-  EXPECT_NE(refusal_of("quantity = \"max_opening\"\nlimit = 1\nsource = \"a\"\ninterface = \"soli\"\n").find("did you mean \"soil\"?"),
-            std::string::npos);
-  EXPECT_NE(refusal_of("quantity = \"max_top_motion\"\nlimit = 1\nsource = \"a\"\ninterface = \"soil\"\n").find("the whole run"),
-            std::string::npos);
-}
-
-TEST(VerdictCriteria, EveryQuantityIsFoundByItsName) {
-  for (const VerdictQuantity& quantity : verdict_quantities()) {
-    EXPECT_EQ(find_verdict_quantity(quantity.name), &quantity);
-    EXPECT_NE(refusal_of("quantity = \"" + std::string(quantity.name) + "\"\nlimit = \"1 furlong2\"\nsource = \"a\"\n"), "");
-    EXPECT_EQ(refusal_of("quantity = \"" + std::string(quantity.name) + "\"\nlimit = 1\nsource = \"a\"\n") == "",
-              !quantity.of_beam);  // beams need an envelope
-  }
 }
 
 }  // namespace
