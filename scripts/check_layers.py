@@ -53,7 +53,7 @@ for path in sorted(ROOT.rglob("*")):
         continue
     lines = path.read_text().splitlines()
     of_parts = ORDER.index(layer) < ORDER.index("case") or layer in DECLARED_FOR
-    known_keys = declared.get(ROOT / DECLARED_FOR.get(layer, "") if layer in DECLARED_FOR else path.parent if of_parts else path, set())
+    known_keys = declared.get(ROOT / DECLARED_FOR[layer] if layer in DECLARED_FOR else path.parent if of_parts else path, set())
     for number, line in enumerate(lines, 1):
         place = f"src/uplift/{path.relative_to(ROOT)}:{number}"
         include = re.match(r'\s*#include "uplift/([a-z]+)/', line)
