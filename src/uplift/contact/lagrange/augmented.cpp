@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "uplift/contact/lagrange/force_share.h"
 #include "uplift/contact/lagrange/lagrange.h"
-#include "uplift/contact/lagrange/status.h"
 #include "uplift/contact/method.h"
 #include "uplift/contact/newton/newton.h"
 #include "uplift/contact/point_rows.h"
@@ -13,8 +13,8 @@
 // Augmented Lagrangian (paper, eq 1 with alpha > 0): p = P(m + e g), solved by Newton; then m <- p, until the multipliers stand still. Each
 // update contracts the error by 1/(1 + e F): with e F_ii = factor a handful of updates reaches round-off. Where it contracts slowly
 // (neighbouring points of a rigid footing are nearly one row), e grows by 16 until round-off in the openings would show in the forces. The
-// updates leave open how redundant points (a rigid footing on many of them) share their force: the linear problem of the status that they
-// have found gives the pressures of least sum p^2/area, as the multipliers alone do (lagrange), where that moves nothing.
+// updates leave open how redundant points (a rigid footing on many of them) share their force; force_share.h tells it, as for the
+// multipliers alone (lagrange).
 namespace uplift {
 
 void augmentation(const ContactModel& model, double factor, Vector& stiffness) {
@@ -39,65 +39,8 @@ struct AugmentedWork final : MethodWork {
   NewtonWork newton;
   std::unique_ptr<MethodWork> frictional;
   ResidualScratch residual;
-  StatusStep shares;
-  InterfaceSolution shared;
+  ForceShare share;
 };
-
-/// Only rows that depend on each other can share a force in several ways.
-bool may_be_redundant(const ContactModel& model) {
-  Index held = 0;
-  for (const Block& block : model.blocks)
-    if (block.cone != nullptr) held += block.rows();
-  return held > 1 && !PointRows::suits(model);
-}
-
-/// The status that forces and motions show: open without pressure, slip where the point moves along the surface. A point on its friction
-/// bound that does not move may as well stick, and others carry its share.
-void read_status(const InterfaceProblem& problem, InterfaceSolution& solution) {
-  constexpr double near = 1e-9;
-  const double small = 1e-12 * solution.force.cwiseAbs().maxCoeff();
-  const double still = near * (solution.opening - problem.free_opening).cwiseAbs().maxCoeff();
-  std::size_t index = 0;
-  for (const Block& block : problem.model->blocks) {
-    const int n = block.batch.points, tangents = block.batch.components - 1;
-    for (int i = 0; i < n; ++i, ++index) {
-      if (block.cone == nullptr) continue;
-      double slip = 0;
-      for (int c = 0; c < tangents; ++c) {
-        const int row = block.first + c * n + i;
-        slip = std::hypot(slip, solution.opening[row] - problem.from[row]);
-      }
-      const bool presses = -solution.force[block.first + tangents * n + i] > small;
-      const bool slips = tangents == 0 || block.cone->friction() <= 0 || slip > still;
-      solution.status[index] = !presses ? Status::open : slips ? Status::slip : Status::stick;
-    }
-  }
-}
-
-/// Shares the force of redundant points: openings and resultants stay (points without an opening may turn out to carry nothing), or
-/// nothing is done.
-void share_redundant(const InterfaceProblem& problem, double tolerance, AugmentedWork& work, InterfaceSolution& solution) {
-  if (!may_be_redundant(*problem.model)) return;
-  work.shared = solution;
-  size_solution(problem, work.shared);
-  if (work.shared.force.size() != solution.force.size() || solution.force.size() == 0) return;
-  work.shared.force = solution.force, work.shared.opening = solution.opening, work.shared.now = solution.now;
-  read_status(problem, work.shared);
-  work.shares.begin(problem, no_gap * problem.model->size, work.shared);
-  work.shares.guess_from_solution();
-  constexpr int most = 20;
-  bool settled = false;
-  for (int i = 0; i < most && !settled; ++i) {
-    if (!work.shares.solve() || !work.shares.finite()) return;
-    settled = !work.shares.update_status(false);
-  }
-  if (!settled) return;
-  if (!(work.shares.residual() <= 10 * tolerance)) return;
-  work.shares.write_status();
-  const double moved = (work.shared.opening - solution.opening).cwiseAbs().maxCoeff();
-  const double size = (solution.opening - problem.free_opening).cwiseAbs().maxCoeff();
-  if (moved <= 1e-6 * size) std::swap(solution, work.shared);
-}
 
 class AugmentedLagrangian final : public ContactMethod {
  public:
@@ -119,7 +62,7 @@ class AugmentedLagrangian final : public ContactMethod {
       if (again.converged) total = again;
       total.iterations = iterations;
     }
-    if (total.converged) share_redundant(problem, tolerance_, work, solution);
+    if (total.converged) work.share.solve(problem, no_gap * problem.model->size, solution);
     return total;
   }
 

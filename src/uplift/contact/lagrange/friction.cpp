@@ -3,14 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uplift/contact/lagrange/force_share.h"
 #include "uplift/contact/lagrange/status.h"
 #include "uplift/contact/newton/newton.h"
 
 // Semismooth Newton on the contact status of frictional points. For a status the step is linear (lagrange_status.h). Then each point looks
 // at its trial:
-//   closed  opens when its pressure is tensile; an open one closes when it penetrates, or touches where the closed rows press
+//   closed  opens when its pressure is tensile; an open one closes when it penetrates
 //   stick   slips when |p_t| > -mu p_n, in the direction of p_t
 //   slip    sticks when p_t + rho slip falls inside the bound (in 2D: when it moves against its friction force)
+// Points of a rigid base then share the force anew (force_share.h): the status tells its resultant, not how it is distributed.
 namespace uplift {
 namespace {
 
@@ -23,7 +25,6 @@ class Frictional final : public MethodWork {
     problem_ = &problem, options_ = &options, solution_ = &solution;
     outcome_ = Outcome();
     step_.begin(problem, options.gap_of(*problem.model), solution);
-    if (found_.force.size() != solution.force.size()) found_ = solution;  // its room
     visited_.reserve(static_cast<std::size_t>(options.most_iterations) + 50 + 8 * step_.points().size());
     return find();
   }
@@ -62,23 +63,8 @@ class Frictional final : public MethodWork {
 
   Outcome finish() {
     outcome_.converged = true;
-    share_force();
+    share_.solve(*problem_, step_.gap(), *solution_);
     return outcome_;
-  }
-
-  /// Which of the points that touch carry the force is not told by a solution of independent rows: the force of least norm is wanted, where
-  /// it moves nothing. With friction another distribution may slide elsewhere, and the solution that was found stays.
-  void share_force() {
-    constexpr int most = 20;
-    constexpr double same = 1e-9;
-    if (!step_.share_force()) return;
-    found_ = *solution_;
-    const Outcome before = outcome_;
-    if ((settle(most, false) || settle(most, true)) && confirmed()) {
-      const double moved = (found_.opening - problem_->free_opening).cwiseAbs().maxCoeff();
-      if ((found_.opening - solution_->opening).cwiseAbs().maxCoeff() <= same * moved + options_->gap_of(*problem_->model)) return;
-    }
-    *solution_ = found_, outcome_ = before;
   }
 
   /// Newton until status and forces stand still. `single`: one point changes at a time, least index first (Bland's rule). False when a
@@ -160,10 +146,9 @@ class Frictional final : public MethodWork {
       if (!settled) continue;
       solve_by_newton(*problem_, augmented, newton, newton_, *solution_);
       if (!found_by_augmentation()) break;
-      outcome_.converged = true;
       step_.guess_from_solution();
       step_.write_status();
-      return outcome_;
+      return finish();
     }
     return fail(unsettled());
   }
@@ -193,8 +178,8 @@ class Frictional final : public MethodWork {
   const InterfaceProblem* problem_ = nullptr;
   const LagrangeOptions* options_ = nullptr;
   InterfaceSolution* solution_ = nullptr;
-  InterfaceSolution found_;  // before its force is shared
   StatusStep step_;
+  ForceShare share_;
   NewtonWork newton_;  // of the augmentation
   ResidualScratch residual_;
   std::vector<std::uint64_t> visited_;  // hashes of the sets met

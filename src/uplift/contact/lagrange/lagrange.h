@@ -28,7 +28,8 @@ Outcome solve_frictionless(const InterfaceProblem&, const LagrangeOptions&, std:
 
 /// Cones with Coulomb friction: p_n <= 0, |p_t| <= -mu p_n, p_t along the slip opening_t - from_t (maximum dissipation), laws and shift
 /// beside them. When the status repeats, one point at a time changes (least index first); when that ends without an answer, augmented
-/// Lagrangian updates give the status, from which the exact solve is tried again. `work` is made at the first call.
+/// Lagrangian updates give the status, from which the exact solve is tried again. Redundant points share the force at the end. `work` is
+/// made at the first call.
 Outcome solve_frictional(const InterfaceProblem&, const LagrangeOptions&, std::unique_ptr<MethodWork>& work, InterfaceSolution&);
 
 /// Forces of the law blocks at solution.opening, scaled: fills their rows of solution.force and solution.now; `slope` (null: not wanted)

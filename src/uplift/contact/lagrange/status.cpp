@@ -20,7 +20,6 @@ void StatusStep::begin(const InterfaceProblem& problem, double gap_tolerance, In
   problem_ = &problem, solution_ = &solution;
   gap_ = problem.rows() > 0 ? std::max(gap_tolerance, 1e-14 * problem.free_opening.cwiseAbs().maxCoeff()) : gap_tolerance;
   finite_ = true;
-  redundant_ = false;
   changed_.clear();
   slope_offsets(*problem.model, offsets_);
   slope_.setZero(offsets_.back());
@@ -76,7 +75,7 @@ void StatusStep::guess_from_free_opening() {
   for (FrictionPoint& point : points_)
     point.status = any && !penetrates(point) ? Status::open : point.friction > 0 ? Status::stick : Status::slip;
   solution_->z.setZero();
-  solution_->opening = problem_->free_opening;
+  open_at(solution_->z);
 }
 
 void StatusStep::scale_friction(double share) {
@@ -86,19 +85,21 @@ void StatusStep::scale_friction(double share) {
   }
 }
 
+/// Not opening - from: in a short step of a body that has slid far its round-off would turn the friction.
 std::array<double, 2> StatusStep::slip(const FrictionPoint& point) const {
   std::array<double, 2> result{};
-  for (int c = 0; c < point.tangents(); ++c)
-    result[static_cast<std::size_t>(c)] = solution_->opening[point.row(c)] - problem_->from[point.row(c)];
+  for (int c = 0; c < point.tangents(); ++c) {
+    const Index row = point.row(c);
+    result[static_cast<std::size_t>(c)] = (problem_->free_opening[row] - problem_->from[row]) + motion_[row];
+  }
   return result;
 }
 
 /// What the point would rather be, and in which direction it would slip.
 Status StatusStep::trial(const FrictionPoint& point, std::array<double, 2>& direction) const {
   const double normal = solution_->force[point.normal()], opening = solution_->opening[point.normal()], small = 1e-12 * largest_force_;
-  const bool takes_share = redundant_ && opening <= gap_ && field_[point.normal()] * point.area < -small;
   const bool closed = point.status != Status::open;
-  if (closed ? normal > small : opening >= -gap_ && !takes_share) return Status::open;
+  if (closed ? normal > small : opening >= -gap_) return Status::open;
   if (!(point.friction > 0)) return Status::slip;
   const double bound = point.friction * (closed ? std::max(0.0, -normal) : std::max(0.0, -opening * point.rho_normal));
   std::array<double, 2> push = slip(point);
@@ -111,17 +112,6 @@ Status StatusStep::trial(const FrictionPoint& point, std::array<double, 2>& dire
   if (size > 0) direction = {push[0] / size, push[1] / size};
   if (point.status == Status::slip) return size < bound - point.rho_tangent * gap_ - small ? Status::stick : Status::slip;
   return size > bound + small ? Status::slip : Status::stick;
-}
-
-bool StatusStep::share_force() {
-  if (redundant_ || held_.empty() || PointRows::suits(*problem_->model)) return false;
-  const auto touches = [&](const FrictionPoint& point) {
-    return point.status == Status::open && solution_->opening[point.normal()] <= gap_;
-  };
-  if (std::ranges::none_of(points_, touches)) return false;
-  redundant_ = true;
-  find_field();
-  return update_status(false);
 }
 
 bool StatusStep::update_status(bool single) {

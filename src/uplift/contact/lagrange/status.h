@@ -53,9 +53,6 @@ class StatusStep {
   bool solve();
   /// Looks at the trial of every point; true when a status changed. `single`: only the first that wants to.
   bool update_status(bool single);
-  /// After a solution whose held rows are independent: open points that touch take their share of the force of least norm. True when there
-  /// are any; solve() then tells whether they change the motion.
-  bool share_force();
   /// Balance with the true law forces (which it evaluates), and friction directions, relative.
   double residual();
   void write_status();
@@ -66,6 +63,8 @@ class StatusStep {
   /// Normal rows of the points that changed last.
   const std::vector<std::ptrdiff_t>& changed() const { return changed_; }
   bool finite() const { return finite_; }
+  /// m: a point is closed up to this opening.
+  double gap() const { return gap_; }
 
  private:
   struct Held {
@@ -84,7 +83,6 @@ class StatusStep {
   void list_held_rows();
   bool hold();
   void measure_excess();
-  void find_field();
   void open_at(const Vector& z);
   void write_forces();
   std::array<double, 2> slip(const FrictionPoint&) const;
@@ -96,9 +94,8 @@ class StatusStep {
   std::vector<FrictionPoint> points_;
   std::vector<Held> held_;
   std::vector<int> offsets_;
+  Vector motion_;                // C z [m]
   Vector slope_, linear_force_;  // law forces = linear_force_ + slope C z
-  Vector field_;                 // C y, pressure that an open row would carry
-  bool redundant_ = false;       // the field counts: the held rows are not independent, or an open point touches beside them
   double largest_force_ = 0;
   bool finite_ = true;
   std::vector<std::ptrdiff_t> changed_;

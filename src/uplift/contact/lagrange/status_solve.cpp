@@ -20,7 +20,7 @@ StatusStep::~StatusStep() = default;
 void StatusStep::size_work() {
   const Index rows = problem_->rows(), r = problem_->model->factor.cols();
   if (moved_.size() == rows && z_.size() == r) return;
-  for (Vector* v : {&linear_force_, &field_, &q_, &excess_, &moved_, &taken_, &known_, &force_}) v->setZero(rows);
+  for (Vector* v : {&linear_force_, &q_, &excess_, &moved_, &motion_, &taken_, &known_, &force_}) v->setZero(rows);
   for (Vector* v : {&right_, &z_, &reaction_}) v->setZero(r);
   for (Vector* v : {&more_, &resultant_}) v->setZero(std::max(rows, r));
   held_.reserve(static_cast<std::size_t>(rows));
@@ -28,8 +28,8 @@ void StatusStep::size_work() {
 }
 
 void StatusStep::open_at(const Vector& z) {
-  solution_->opening = problem_->free_opening;
-  solution_->opening.noalias() += problem_->model->factor * z;
+  motion_.noalias() = problem_->model->factor * z;
+  solution_->opening = problem_->free_opening + motion_;
 }
 
 void StatusStep::list_held() {
@@ -145,7 +145,6 @@ bool StatusStep::solve() {
   linearise_laws();
   list_held();
   turn_slip();
-  redundant_ = false;
   if (solve_by_rows()) return true;
   if (!assemble()) return false;
   if (!held_.empty() && !hold()) return false;
@@ -154,7 +153,6 @@ bool StatusStep::solve() {
   solution_->z = z_;
   open_at(z_);
   write_forces();
-  if (redundant_) find_field();
   return true;
 }
 
@@ -173,6 +171,7 @@ bool StatusStep::solve_by_rows() {
   finite_ = true;
   solution_->z = z_;
   solution_->opening = moved_;
+  motion_ = moved_ - problem_->free_opening;
   write_forces();
   return true;
 }
@@ -264,16 +263,7 @@ bool StatusStep::hold() {
   product_.topLeftCorner(count, rank).noalias() = v_.leftCols(count).transpose() * basis;
   image_.compute(product_, count, rank, 0);
   image_.solve_transposed(resultant_, q_);
-  redundant_ = rank < count;
   return true;
-}
-
-/// Dual of the force of least norm, q = V y on the held rows.
-void StatusStep::find_field() {
-  const Index rank = range_.rank();
-  image_.solve(q_, more_);
-  reaction_.noalias() = range_.basis().leftCols(rank) * more_.head(rank);
-  field_.noalias() = problem_->model->factor * reaction_;
 }
 
 /// Forces of the cone points from the multipliers q of the held rows (per root of area).
