@@ -281,6 +281,25 @@ TEST(StoredProblems, every_method_by_one_yardstick) {
   }
 }
 
+// Under a rigid base two points that stick leave a third the round-off of the openings for a slip. It must not turn the friction.
+TEST(StoredProblems, RoundOffIsNoSlip) {
+  const StoredProblem stored = load(support::source_folder() + "/tests/data/problems/slip_of_round_off.json");
+  const InterfaceProblem& problem = stored.problem;
+  const Block& block = problem.model->blocks.front();
+  const int n = block.batch.points;
+  InterfaceSolution solution;
+  const Outcome outcome = method("lagrange")->solve(problem, solution);
+  ASSERT_TRUE(outcome.converged) << outcome.why;
+  EXPECT_LE(outcome.iterations, 20);
+  EXPECT_LE(contact_residual(problem, solution), 1e-12);
+  for (int i = 0; i < n; ++i) {
+    const double bound = -block.cone->friction() * solution.force[2 * n + i];
+    if (!(bound > 0)) continue;
+    EXPECT_LE(std::hypot(solution.opening[i] - problem.from[i], solution.opening[n + i] - problem.from[n + i]), 1e-16) << i;
+    EXPECT_LE(std::hypot(solution.force[i], solution.force[n + i]), bound * (1 + 1e-12)) << i;
+  }
+}
+
 // The status of this one repeats in the primal-dual active set: it must be noticed, treated and reported.
 TEST(StoredProblems, repeating_status_is_reported) {
   const StoredProblem stored = load(support::source_folder() + "/tests/problems/repeating_status.json");

@@ -85,7 +85,7 @@ void StatusStep::scale_friction(double share) {
   }
 }
 
-/// Not opening - from: in a short step of a body that has slid far its round-off would turn the friction.
+/// Not opening - from: where a base has slid far, its round-off would turn the friction of points that do not move.
 std::array<double, 2> StatusStep::slip(const FrictionPoint& point) const {
   std::array<double, 2> result{};
   for (int c = 0; c < point.tangents(); ++c) {
