@@ -9,7 +9,7 @@ namespace uplift {
 /// What the analysis of a model will need beside the matrix of the step.
 struct BulkUse {
   bool keeps_mass = true;   // a factor of M: for impact rules, and for recorded accelerations that only the balance tells (path average)
-  bool propagates = false;  // a second factor of the size of the step's (impact rule `propagate`)
+  bool propagates = false;  // a second factor of the size of the step's (impact rules `propagate`, and `project_hold` with damping)
   int step_sizes = 1;       // factors of the step kept: one more for every halving that happens
   bool impacts = false;     // a second set of interface blocks, of M
   double record_bytes = 0;  // what the run keeps of its steps

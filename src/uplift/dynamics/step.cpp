@@ -341,7 +341,7 @@ bool Stepper::try_step(Level& level) {
     friction_step_ = friction_work(last_->model->blocks, now_, next_);
     if (impacts_) apply_impact(level);
     small::copy(contact_.size(), contact_.data(), next_.force.data());
-    small::copy(contact_.size(), contact_.data(), next_.mean_force.data());
+    small::copy(contact_.size(), lags_next_ ? reported_.data() : contact_.data(), next_.mean_force.data());
     if (impacts_ && impact_.force_includes_impulse()) next_.mean_force += impulse_ / level.step;
   }
   return true;
@@ -356,6 +356,8 @@ bool Stepper::substep(int halving) {
     force_now_.swap(force_next_);
     stiff_now_.swap(stiff_next_);
     momentum_now_.swap(momentum_next_);
+    lag_.swap(lag_next_);
+    lags_ = lags_next_;
     if (filtered_) {
       filtered_stiff_.swap(work_);
       filtered_momentum_.swap(work2_);

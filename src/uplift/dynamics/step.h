@@ -39,6 +39,7 @@ struct Ledger {
   Energies energies;
   double initial_energy = 0, largest_external = 0;  // J
   bool acceleration = false;                        // the state's acceleration is that of the scheme and goes on
+  Vector damping_lag;                               // free unknowns: D (v' - v) of an impact at the end [N]; empty without one
 };
 
 /// Where the march through a stage stands between two steps: a value, from which another Stepper of the same stage goes on.
@@ -71,7 +72,7 @@ class Stepper {
   /// needs none: its state has zero). With the ledger of a stage before, energies go on counting, and so does its acceleration when it is
   /// the same scheme's.
   void start(State state, const Ledger* before = nullptr);
-  Ledger ledger() const { return {energies_, initial_energy_, largest_external_, !path_}; }
+  Ledger ledger() const { return {energies_, initial_energy_, largest_external_, !path_, lags_ ? lag_ : Vector()}; }
   /// Goes on where another Stepper of the same stage has been: takes the place of `start`. After `reenter` of that one both take the same
   /// steps to the last bit.
   void resume(MarchState from);
@@ -126,6 +127,8 @@ class Stepper {
   bool kinematics(const Level& level);
   Sparse matrix_of(const Level& level) const;
   OwnedSum upper_of(const Level& level) const;
+  OwnedSum damped_mass(double w) const;
+  double velocity_weight(const Level& level) const;
   ContactModel frame_of(const Level& level) const;
   Outcome solve(Level& level);
   void prepare_impacts();
@@ -134,12 +137,17 @@ class Stepper {
   double contact_work() const;
   void apply_impact(Level& level);
   bool strikes(const Impact& data);
-  bool apply_rule(const Level& level, const Impact& data);
-  void damp_impact(const Level& level, const Vector& velocity, Vector& acceleration);
+  bool apply_rule(const Level& level, Impact& data);
+  bool gap_closes() const;
+  void soften(const Level& level, Vector& acceleration);
+  bool lag_damping(const Level& level);
+  void report_damping(const Level& level, Impact& data, bool with_friction);
+  void balance_pressure(const Impact& data, const Vector& acceleration);
+  void balance_friction(const Level& level, const Impact& data, const Vector& acceleration);
+  void set_lag(const Ledger& from);
   void prepare_friction(const std::vector<Block>& blocks);
   bool drop_creating();
   void restore_dropped();
-  bool closes(const std::vector<Block>& blocks) const;
   bool impact_of_friction(const Level& level, const Impact& data);
   void separate_impulse(const Impact& data);
   void separate_impulse_of_friction(const Block& block, const Impact& data);
@@ -190,10 +198,14 @@ class Stepper {
   double closed_gap_ = 1e-9;  // m: what closes from a smaller gap is no impact
   Vector pressed_;            // rows: area of the normal ones that are pressed, else 0 [m2]
   std::vector<int> tangents_;
+  bool closing_ = false;  // a gap closes in the step
   Energies energies_;
   InterfaceEnergy interface_energy_;
   BulkWork impact_work_{linear_};
   Vector velocity_free_;                   // before an impact
+  bool lags_ = false, lags_next_ = false;  // an impact at the beginning, at the end of the step:
+  Vector lag_, lag_next_;                  // D (v' - v) [N]
+  Vector reported_;                        // rows: contact force after an impact with all of the damping [N]
   std::unique_ptr<CoulombRates> coulomb_;  // null without friction, and with other rules than project_hold
   FrictionOfImpacts friction_;
   double friction_step_ = 0;  // J: work of the friction of constraints in the step

@@ -112,41 +112,35 @@ bool Stepper::strikes(const Impact& data) {
   return goes_on(next_.velocity, data.step) || goes_on(next_.acceleration, data.step * data.step);
 }
 
-/// Velocity and acceleration by the rule of the case. Where a point with friction is open, friction belongs to the impulse (true);
-/// elsewhere sliding points slide on, and the rule alone is exact.
-bool Stepper::apply_rule(const Level& level, const Impact& data) {
+/// Velocity and acceleration by the rule of the case: impulses spread with the damping force that they change, the acceleration by the mass
+/// alone. Where a point with friction is open, friction belongs to the impulse (true); elsewhere sliding points slide on, and the rule
+/// alone is exact.
+bool Stepper::apply_rule(const Level& level, Impact& data) {
   if (strikes(data) && impact_of_friction(level, data)) return true;
-  velocity_free_ = next_.velocity;
+  if (level.impact != nullptr) data.mass = level.impact.get();
   impact_.apply(data, next_.velocity, impulse_, impact_scratch_);
   if (!impact_.holds_acceleration()) return false;
-  damp_impact(level, next_.velocity, next_.acceleration);
+  if (level.impact != nullptr && closing_)
+    soften(level, next_.acceleration);
+  else
+    data.mass = mass_spread_.get();
   impact_.hold(data, next_.acceleration, impact_scratch_);
   return false;
-}
-
-/// Whether an open point of a cone with friction is pressed at the end of the step.
-bool Stepper::closes(const std::vector<Block>& blocks) const {
-  return std::ranges::any_of(blocks, [&](const Block& block) {
-    if (block.cone == nullptr || !(block.cone->friction() > 0)) return false;
-    const int normal = block.first + block.batch.normal();
-    for (int row = normal; row < normal + block.batch.points; ++row)
-      if (pressed_[row] > 0 && now_.opening[row] > closed_gap_) return true;
-    return false;
-  });
 }
 
 /// The whole contact force is taken out of the velocity, and Coulomb's law at the level of velocities gives the impulse instead. False
 /// where no impulse was found: the rule without friction then acts.
 bool Stepper::impact_of_friction(const Level& level, const Impact& data) {
   const std::vector<Block>& blocks = last_->model->blocks;
-  const bool closing = closes(blocks);
   FrictionOfImpacts& now = friction_;
   now.dropped.setZero(contact_.size());
   for (const Block& block : blocks)
     if (block.cone != nullptr) now.dropped.segment(block.first, block.rows()) = contact_.segment(block.first, block.rows());
-  now.push.noalias() = mass_spread_->factor.transpose() * now.dropped;
+  const Spread& spread = level.impact != nullptr ? *level.impact : *mass_spread_;
+  CoulombRates& impulses = level.impact != nullptr ? *level.coulomb : *coulomb_;
+  now.push.noalias() = spread.factor.transpose() * now.dropped;
   now.velocity = next_.velocity;
-  mass_spread_->add(data.velocity_weight, now.push, now.velocity);
+  spread.add(data.velocity_weight, now.push, now.velocity);
   row_rates(data, now.velocity, 0, contact_.size(), now.rates);
   now.takes_part = pressed_;  // and those that are closed without a pressure: under a rigid base which ones is not unique
   for (const Block& block : blocks) {
@@ -155,31 +149,51 @@ bool Stepper::impact_of_friction(const Level& level, const Impact& data) {
     for (int row = normal; row < normal + block.batch.points; ++row)
       if (next_.opening[row] <= closed_gap_) now.takes_part[row] = row_area_[row];
   }
-  if (!coulomb_->solve(now.rates, now.takes_part, still * closed_gap_ / level.step)) return false;
-  mass_spread_->add(1, coulomb_->z(), now.velocity);
-  now.impulse = coulomb_->impulse();
+  if (!impulses.solve(now.rates, now.takes_part, still * closed_gap_ / level.step)) return false;
+  spread.add(1, impulses.z(), now.velocity);
+  now.impulse = impulses.impulse();
 
   // the force after the impact: what Coulomb's law asks for in half a step from now on
   const double time = data.velocity_weight / data.acceleration_weight, at_rest = 1e-9 * now.rates.cwiseAbs().maxCoeff();
   for (Index row = 0; row < now.takes_part.size(); ++row)
-    if (coulomb_->rate()[row] > at_rest) now.takes_part[row] = 0;
+    if (impulses.rate()[row] > at_rest) now.takes_part[row] = 0;
+  const bool soft = closing_ && level.impact != nullptr;
+  const Spread& held = soft ? *level.impact : *mass_spread_;
+  CoulombRates& forces = soft ? *level.coulomb : *coulomb_;
   now.after = next_.acceleration;
-  mass_spread_->add(data.acceleration_weight, now.push, now.after);
-  velocity_free_ = next_.velocity;
-  damp_impact(level, now.velocity, now.after);
+  if (soft) soften(level, now.after);
+  now.push.noalias() = held.factor.transpose() * now.dropped;
+  held.add(data.acceleration_weight, now.push, now.after);
   now.soon = now.velocity + time * now.after;
   row_rates(data, now.soon, 0, contact_.size(), now.rates);
-  if (!coulomb_->solve(now.rates, now.takes_part, still * closed_gap_ / level.step)) return false;
-  mass_spread_->add(1 / time, coulomb_->z(), now.after);
+  if (!forces.solve(now.rates, now.takes_part, still * closed_gap_ / level.step)) return false;
+  held.add(1 / time, forces.z(), now.after);
   next_.velocity = now.velocity, next_.acceleration = now.after;
   for (const Block& block : blocks) {
     if (block.cone == nullptr) continue;
-    contact_.segment(block.first, block.rows()) = coulomb_->impulse().segment(block.first, block.rows()) / data.velocity_weight;
-    if (!closing) continue;
+    contact_.segment(block.first, block.rows()) = forces.impulse().segment(block.first, block.rows()) / data.velocity_weight;
+    if (!closing_) continue;
     const int normal = block.first + block.batch.normal(), n = block.batch.points;
     impact_impulse_.segment(normal, n) = now.impulse.segment(normal, n) - data.velocity_weight * contact_.segment(normal, n);
   }
   return true;
+}
+
+/// The acceleration contains the present forces; those are sought that belong to it by Coulomb's law, as in impact_of_friction().
+void Stepper::balance_friction(const Level& level, const Impact& data, const Vector& acceleration) {
+  FrictionOfImpacts& now = friction_;
+  const double time = data.velocity_weight / data.acceleration_weight;
+  now.dropped.setZero(contact_.size());
+  for (const Block& block : last_->model->blocks)
+    if (block.cone != nullptr) now.dropped.segment(block.first, block.rows()) = contact_.segment(block.first, block.rows());
+  now.push.noalias() = level.impact->factor.transpose() * now.dropped;
+  now.soon = next_.velocity + time * acceleration;
+  level.impact->add(data.velocity_weight, now.push, now.soon);
+  row_rates(data, now.soon, 0, contact_.size(), now.rates);
+  if (!level.coulomb->solve(now.rates, now.takes_part, still * closed_gap_ / data.step)) return;
+  for (const Block& block : last_->model->blocks)
+    if (block.cone != nullptr)
+      reported_.segment(block.first, block.rows()) = level.coulomb->impulse().segment(block.first, block.rows()) / data.velocity_weight;
 }
 
 }  // namespace uplift

@@ -20,9 +20,7 @@ void Stepper::prepare_impacts() {
     for (int i = 0; i < interface.rows(); ++i) row_area_[row++] = interface.area[i % interface.batch.points];
   if (bulk_.small) dense_b_ = Matrix(b_);
   const std::vector<Block> blocks = blocks_of(model_, behaviours_).blocks;
-  if (impacts_ && impact_.holds_acceleration() &&
-      std::ranges::any_of(blocks, [](const Block& block) { return block.cone != nullptr && block.cone->friction() > 0; }))
-    prepare_friction(blocks);
+  if (impacts_ && impact_.holds_acceleration() && any_friction(blocks)) prepare_friction(blocks);
 }
 
 /// The rows that take part in an impact: normal rows of constraints that are pressed (or, where there is no constraint, those of stiff
@@ -91,62 +89,44 @@ double Stepper::contact_work() const {
 void Stepper::apply_impact(Level& level) {
   impact_impulse_.setZero();
   impulse_.setZero();
+  lags_next_ = false;
   impact_loss_ += contact_work();
   if (!select_pressed(last_->model->blocks, contact_)) return;
-  const double weight = (1 - options_.scheme.alpha_f) / (1 - options_.scheme.alpha_m);
   Impact data = impact_data(contact_);
   data.dynamic = level.dynamic.get();
   std::swap(data.tangents, tangents_);
   data.step = level.step;
-  data.velocity_weight = options_.scheme.gamma * level.step * weight;
-  data.acceleration_weight = weight;
+  data.velocity_weight = velocity_weight(level);
+  data.acceleration_weight = (1 - options_.scheme.alpha_f) / (1 - options_.scheme.alpha_m);
   const double before = 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
+  velocity_free_ = next_.velocity;
+  closing_ = gap_closes();
   const bool with_friction = apply_rule(level, data);
   std::swap(data.tangents, tangents_);
   bulk_.mass.multiply(next_.velocity, momentum_next_);
   impact_loss_ += before - 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
   if (impact_.holds_acceleration() && !with_friction) separate_impulse(data);
-}
-
-/// What damping D does to the acceleration when an impact has changed the velocity (docs/theory, section 5, a_D): (M + d/m D) a_D = -D dv
-/// with K_eff = K + d D + m M. Solved by K_eff, with the right-hand side -D dv first and then with K/m a_D, what the first one leaves.
-void Stepper::damp_impact(const Level& level, const Vector& velocity, Vector& acceleration) {
-  if (bulk_.damping.zero()) return;
-  const BulkFactor* factor = level.solver->factor() != nullptr ? level.solver->factor() : level.dynamic_factor.get();
-  constexpr double round_off = 1e-12;
-  product_ = velocity - velocity_free_;
-  if (product_.squaredNorm() <= round_off * round_off * velocity.squaredNorm()) return;
-  balance_.resize(product_.size()), work2_.resize(product_.size());
-  bulk_.damping.multiply(product_, balance_);
-  factor->solve(balance_, work2_, impact_work_);
-  acceleration -= level.mass * work2_;
-  bulk_.stiffness.multiply(work2_, balance_);
-  factor->solve(balance_, work2_, impact_work_);
-  acceleration -= level.mass * work2_;
+  if (lag_damping(level)) report_damping(level, data, with_friction);
 }
 
 /// The force that balances the accelerations after the impact is that of the contact: it is reported, and the next step begins with it. In
 /// a step in which a gap closes, the force of the displacement solve contains the momentum that the impact transfers, over the step: it
 /// grows as 1/dt, and the rest is reported as an impulse [N s].
 void Stepper::separate_impulse(const Impact& data) {
-  const double *pressed = pressed_.data(), *opening = now_.opening.data(), gap = closed_gap_;
-  int closing = 0;
-#pragma omp simd reduction(+ : closing)
-  for (Eigen::Index i = 0; i < pressed_.size(); ++i) closing += static_cast<int>(pressed[i] > 0) & static_cast<int>(opening[i] > gap);
   constexpr double round_off = 1e-9;
   const ImpactScratch& scratch = impact_scratch_;
-  if (closing == 0 && !(scratch.push.squaredNorm() > round_off * round_off * scratch.y.squaredNorm())) return;
+  if (!closing_ && !(scratch.push.squaredNorm() > round_off * round_off * scratch.y.squaredNorm())) return;
   for (const Block& block : last_->model->blocks) {
     if (block.cone == nullptr) continue;  // the force of a law follows from its opening
     const int n = block.batch.points, normal = block.first + block.batch.normal();
     if (block.cone->friction() > 0) {
-      if (closing > 0) separate_impulse_of_friction(block, data);
+      if (closing_) separate_impulse_of_friction(block, data);
       continue;
     }
     for (int i = 0; i < n; ++i) {
       if (!(pressed_[normal + i] > 0)) continue;
       const double smooth = scratch.impulse[normal + i] / data.acceleration_weight;
-      if (closing > 0) impact_impulse_[normal + i] = scratch.total[normal + i] - data.velocity_weight * smooth;
+      if (closing_) impact_impulse_[normal + i] = scratch.total[normal + i] - data.velocity_weight * smooth;
       contact_[normal + i] = smooth;
     }
   }
@@ -160,6 +140,76 @@ void Stepper::separate_impulse_of_friction(const Block& block, const Impact& dat
   const double share = pressure < 0 ? smooth / pressure : 1;
   for (int i = block.first; i < block.first + block.rows(); ++i) contact_[i] *= share;
   for (int i = normal; i < normal + n; ++i) impact_impulse_[i] = impact_scratch_.total[i] - data.velocity_weight * contact_[i];
+}
+
+/// Whether a row that is pressed at the end of the step was open at its beginning.
+bool Stepper::gap_closes() const {
+  const double *pressed = pressed_.data(), *opening = now_.opening.data(), gap = closed_gap_;
+  int closing = 0;
+#pragma omp simd reduction(+ : closing)
+  for (Eigen::Index i = 0; i < pressed_.size(); ++i) closing += static_cast<int>(pressed[i] > 0) & static_cast<int>(opening[i] > gap);
+  return closing > 0;
+}
+
+/// Where a gap closes, (M + w D) a' = f - K u - D v - B^T p: a mode that damping stops within a step stays at rest, where the trapezoidal
+/// rule would turn it round and tear the contact open.
+void Stepper::soften(const Level& level, Vector& acceleration) {
+  bulk_.mass.multiply(acceleration, product_);
+  level.impact_factor->solve(product_, acceleration, impact_work_);
+}
+
+/// The impulse by which an impact changes the damping force over half a step, w D (v' - v), acts at once; the acceleration contains D v,
+/// and where a gap closes w D a'. The next step takes what is too much back. False where no velocity has changed. work_: D (v' - v).
+bool Stepper::lag_damping(const Level& level) {
+  constexpr double round_off = 1e-12;
+  if (level.impact == nullptr) return false;
+  product_ = next_.velocity - velocity_free_;
+  if (!closing_ && product_.squaredNorm() <= round_off * round_off * next_.velocity.squaredNorm()) return false;
+  bulk_.damping.multiply(product_, work_);
+  lag_next_ = work_;
+  if (closing_) {
+    product_ = velocity_weight(level) * next_.acceleration;
+    bulk_.damping.multiply(product_, work2_);
+    lag_next_ -= work2_;
+  }
+  return lags_next_ = true;
+}
+
+/// What the contact bears after an impact contains the damping force D v', as far as the step resolves it: this is reported, and the
+/// impulse is what is left of the whole.
+void Stepper::report_damping(const Level& level, Impact& data, bool with_friction) {
+  reported_ = contact_;
+  level.impact_factor->solve(work_, work2_, impact_work_);
+  work_ = next_.acceleration - work2_;
+  data.mass = level.impact.get();
+  if (with_friction)
+    balance_friction(level, data, work_);
+  else
+    balance_pressure(data, work_);
+  for (const Block& block : last_->model->blocks) {
+    if (block.cone == nullptr) continue;
+    for (int row = block.first + block.batch.normal(), i = 0; i < block.batch.points; ++i, ++row)
+      if (impact_impulse_[row] != 0) impact_impulse_[row] -= data.velocity_weight * (reported_[row] - contact_[row]);
+  }
+}
+
+/// The acceleration contains the forces of the scratch.
+void Stepper::balance_pressure(const Impact& data, const Vector& acceleration) {
+  ImpactScratch& scratch = impact_scratch_;
+  scratch.taken = scratch.impulse / data.acceleration_weight;
+  project_rate(data, acceleration, data.acceleration_weight, Select::all, scratch);
+  for (const Block& block : last_->model->blocks) {
+    if (block.cone == nullptr) continue;
+    const int n = block.batch.points, normal = block.first + block.batch.normal();
+    const auto smooth = scratch.impulse.segment(normal, n) / data.acceleration_weight;
+    if (block.cone->friction() > 0) {
+      const double pressure = contact_.segment(normal, n).sum();
+      reported_.segment(block.first, block.rows()) *= pressure < 0 ? smooth.sum() / pressure : 1;
+      continue;
+    }
+    for (int i = 0; i < n; ++i)
+      if (pressed_[normal + i] > 0) reported_[normal + i] = smooth[i];
+  }
 }
 
 }  // namespace uplift

@@ -43,17 +43,40 @@ Stepper::Level& Stepper::make_level(int halving) {
     if (oracle != nullptr)
       made.solver = make_compared(matrix_of(made), std::move(made.solver), std::move(oracle), options_.oracle_tolerance);
   }
-  if (impacts_ && impact_.holds_acceleration() && !bulk_.damping.zero() && made.solver->factor() == nullptr) {
-    made.dynamic_factor = std::make_unique<BulkFactor>(upper_of(made), &b_, bulk_.small, solver_, model_, linear_);
-    made.why = made.dynamic_factor->why();
-  }
-  if (impacts_ && impact_.needs_dynamic()) {
-    made.dynamic_factor = std::make_unique<BulkFactor>(bulk_.upper(1, 0, 4 / (dt * dt)), &b_, bulk_.small, solver_, model_, linear_);
-    made.why = made.dynamic_factor->why();
-    made.hopeless = made.dynamic_factor->too_large();
-    if (made.why.empty()) made.dynamic = std::make_unique<Spread>(made.dynamic_factor->spread(b_, linear_));
+  const auto spread_by = [&](const OwnedSum& matrix, std::unique_ptr<Spread>& spread) {
+    made.impact_factor = std::make_unique<BulkFactor>(matrix, &b_, bulk_.small, solver_, model_, linear_);
+    made.why = made.impact_factor->why();
+    made.hopeless = made.impact_factor->too_large();
+    if (made.why.empty()) spread = std::make_unique<Spread>(made.impact_factor->spread(b_, linear_));
+  };
+  if (impacts_ && impact_.needs_dynamic()) spread_by(bulk_.upper(1, 0, 4 / (dt * dt)), made.dynamic);
+  if (impacts_ && impact_.holds_acceleration() && !bulk_.damping.zero()) {
+    spread_by(damped_mass(velocity_weight(made)), made.impact);
+    const std::vector<Block> blocks = blocks_of(model_, behaviours_).blocks;
+    if (made.impact != nullptr && any_friction(blocks)) made.coulomb = std::make_unique<CoulombRates>(blocks, made.impact->factor);
   }
   return made;
+}
+
+/// A force p at the end of a step puts -w M^-1 B^T p into the velocity [s].
+double Stepper::velocity_weight(const Level& level) const {
+  return options_.scheme.gamma * level.step * (1 - options_.scheme.alpha_f) / (1 - options_.scheme.alpha_m);
+}
+
+/// M + w D, with a trace of mass where there is none and perhaps no damping either.
+OwnedSum Stepper::damped_mass(double w) const {
+  constexpr double trace = 1e-12;
+  OwnedSum sum = bulk_.upper(0, w, 1);
+  const Vector diagonal = bulk_.mass_matrix.diagonal() + w * bulk_.damping_matrix.diagonal();
+  std::vector<Triplet> light;
+  for (int i = 0; i < bulk_.unknowns; ++i)
+    if (bulk_.massless[static_cast<std::size_t>(i)] != 0) light.emplace_back(i, i, trace * diagonal.maxCoeff());
+  if (light.empty()) return sum;
+  Sparse here(bulk_.unknowns, bulk_.unknowns);
+  here.setFromTriplets(light.begin(), light.end());
+  if (sum.here.size() > 0) here += sum.here;
+  sum.here.swap(here);
+  return sum;
 }
 
 /// Unknowns without mass that nothing but the laws of interfaces holds make K_eff singular: like in a static stage, the closed joint is

@@ -16,9 +16,11 @@ struct Stepper::Level {
   double mass = 0, damping = 0;  // K_eff = K + damping C + mass M
   double mass_velocity = 0, mass_acceleration = 0, damping_velocity = 0, damping_acceleration = 0;
   std::unique_ptr<StepSolver> solver;
-  std::shared_ptr<const BulkFactor> tangent;   // the last one of yielding solids, whose analysis serves the next one
-  std::unique_ptr<BulkFactor> dynamic_factor;  // of K + 4M/dt^2, for `propagate`; of K_eff, for `project_hold` where the solver has none
-  std::unique_ptr<Spread> dynamic;
+  std::shared_ptr<const BulkFactor> tangent;  // the last one of yielding solids, whose analysis serves the next one
+  std::unique_ptr<BulkFactor> impact_factor;  // of the matrix by which impulses spread where it is not M
+  std::unique_ptr<Spread> dynamic;            // of K + 4M/dt^2, for `propagate`
+  std::unique_ptr<Spread> impact;             // of M + gamma dt D, for `project_hold` with damping D
+  std::unique_ptr<CoulombRates> coulomb;      // by which impulses with friction spread there
   // with all forces of the beginning, while a solution without some of them is sought (step_friction.cpp)
   Vector increment;
   PlasticState plastic;

@@ -71,7 +71,7 @@ void list_parts(Archive& archive, T& e) {
 
 template <class Archive, SameAs<Ledger> T>
 void list_parts(Archive& archive, T& ledger) {
-  archive(ledger.energies, ledger.initial_energy, ledger.largest_external, ledger.acceleration);
+  archive(ledger.energies, ledger.initial_energy, ledger.largest_external, ledger.acceleration, ledger.damping_lag);
 }
 
 template <class Archive, SameAs<FilterMemory> T>

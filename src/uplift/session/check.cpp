@@ -160,7 +160,8 @@ CaseFindings find(const Case& read, const RunSpec& spec, const BuiltCase& built)
   if (unknowns > little_to_foresee) {
     BulkUse use;
     use.impacts = built.plan.method->constrains();
-    use.propagates = use.impacts && built.plan.impact->needs_dynamic();
+    use.propagates = use.impacts && (built.plan.impact->needs_dynamic() ||
+                                     (built.plan.impact->holds_acceleration() && built.model.damping.nonZeros() > 0));
     const Stage* stage = dynamic_stage(built.plan);
     const bool balanced = stage != nullptr && stage->path_average && !use.impacts;
     use.keeps_mass = use.impacts || (balanced && (records_accelerations(built.plan) || found.fields));

@@ -8,6 +8,10 @@
 
 namespace uplift {
 
+bool any_friction(const std::vector<Block>& blocks) {
+  return std::ranges::any_of(blocks, [](const Block& block) { return block.cone != nullptr && block.cone->friction() > 0; });
+}
+
 CoulombRates::CoulombRates(const std::vector<Block>& blocks, const Matrix& factor) {
   auto model = std::make_shared<ContactModel>();
   std::ranges::copy_if(blocks, std::back_inserter(model->blocks), [](const Block& block) { return block.cone != nullptr; });

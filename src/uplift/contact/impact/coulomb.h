@@ -10,6 +10,9 @@
 // time makes of accelerations and forces. z belongs to the motion X z (Spread).
 namespace uplift {
 
+/// Whether points of cones may slide against friction.
+bool any_friction(const std::vector<Block>& blocks);
+
 class CoulombRates {
  public:
   /// Blocks of laws are left out. `factor` is C of the mass, rows x r.

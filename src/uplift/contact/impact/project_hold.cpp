@@ -28,9 +28,9 @@ const Entry<ImpactRule>& entry_impact_project_hold() {
        .summary =
            "velocity projected as in `project`, and the acceleration of the rows that stay closed too; with friction, where points open or "
            "close, the impulses of Coulomb's law",
-       .equations = "v' as in `project`\n"
-                    "a' = argmin |a' - (a + a_D + M^-1 B_A^T p)|_M^2 / 2,  B a' >= 0 on the rows with B v' = 0\n"
-                    "(M + gamma dt D) a_D = -D (v' - v),  D the damping",
+       .equations = "v' as in `project`, in the metric of M + gamma dt D, D the damping\n"
+                    "a' = argmin |a' - (a + M^-1 B_A^T p)|_M^2 / 2,  B a' >= 0 on the rows with B v' = 0\n"
+                    "where a gap closes: in the metric of M + gamma dt D, from (M + gamma dt D)^-1 M a",
        .source = "Cherubini, Richard & Frau, eq 4, completed for the acceleration (docs/theory, eqs (18), (18a) and (18b))",
        .params = {}},
       [](const Values&) { return std::make_unique<const ProjectHold>(); }};
