@@ -71,6 +71,7 @@ void Condensed::list_touched(const Model& model, bool gap_moves) {
   touched_ = touched_unknowns(b_);
   if (touched_.size() > 64) {
     touched_.clear();
+    if (b_.nonZeros() > b_.size() / 2) full_b_ = b_;  // of a reduced model
     return;
   }
   touched_b_.setZero(b_.rows(), static_cast<Eigen::Index>(touched_.size()));
@@ -98,8 +99,11 @@ void Condensed::free_opening(const Vector& right, const Vector& displacement) {
   factor_->solve(right, free_, work_);
   if (touched_.empty()) {
     touched_value_ = displacement + free_;
-    problem_.free_opening.noalias() = b_ * touched_value_;
-    problem_.free_opening += gap_;
+    problem_.free_opening = gap_;
+    if (full_b_.size() > 0)
+      problem_.free_opening.noalias() += full_b_ * touched_value_;
+    else
+      problem_.free_opening += b_ * touched_value_;
     return;
   }
   if (to_free_increment_.size() > 0) {
@@ -162,6 +166,14 @@ Outcome Condensed::contact_step(const Vector& right, const StepStart& start, Vec
   return outcome;
 }
 
+/// du = du_free + X z
+void Condensed::add_spread(Vector& increment) const {
+  constexpr Index few_columns = 12;
+  if (spread_.cols() <= few_columns) return small::affine(spread_, free_.data(), solution_.z.data(), increment.data());
+  increment = free_;
+  increment.noalias() += spread_ * solution_.z;
+}
+
 /// The interface problem, and the displacement that follows from it.
 Outcome Condensed::solve_interfaces(const Vector& right, const Vector& displacement, Vector& increment) {
   if (solved_ != nullptr) {
@@ -174,7 +186,7 @@ Outcome Condensed::solve_interfaces(const Vector& right, const Vector& displacem
   if (split_ != nullptr)
     split_->backward(solution_.z, increment);
   else
-    small::affine(spread_, free_.data(), solution_.z.data(), increment.data());
+    add_spread(increment);
   return outcome;
 }
 

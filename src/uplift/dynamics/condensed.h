@@ -73,6 +73,7 @@ class Condensed final : public StepSolver {
   void list_touched(const Model& model, bool gap_moves);
   void free_opening(const Vector& right, const Vector& displacement);
   Outcome solve_interfaces(const Vector& right, const Vector& displacement, Vector& increment);
+  void add_spread(Vector& increment) const;
   Outcome free_step(const Vector& right, Vector& increment);
   Outcome contact_step(const Vector& right, const StepStart& start, Vector& increment);
 
@@ -84,6 +85,7 @@ class Condensed final : public StepSolver {
   std::unique_ptr<SolvedResponse> solved_;
   Matrix touched_b_;  // columns of B that are not empty
   std::vector<int> touched_;
+  Matrix full_b_;             // B where it is full; else empty
   Matrix spread_;             // X: du = du_free + X z
   Matrix to_free_increment_;  // inverse of its touched rows where they are as many as its columns and few, and the gap stays: C = B X; else
                               // empty

@@ -25,25 +25,28 @@ double balance_scale(const InterfaceProblem& problem, NewtonWork& work, const In
   return scale;
 }
 
-double balance_round_off(const InterfaceProblem& problem, const NewtonWork& work, const InterfaceSolution& solution) {
+double balance_round_off(const InterfaceProblem& problem, NewtonWork& work, const InterfaceSolution& solution) {
   const ContactModel& model = *problem.model;
+  double* of_row = work.pull.data();  // what the round-off of a row's force is a share of
+  for (std::size_t b = 0; b < model.blocks.size(); ++b) {
+    const Block& block = model.blocks[b];
+    const double* slopes = work.slope.data() + work.first_slope[b];
+    const int n = block.batch.points, components = block.batch.components;
+    for (int c = 0; c < components; ++c)
+      for (int i = 0; i < n; ++i) {
+        const Index row = block.first + c * n + i;
+        const double slope = std::abs(slopes[(c * components + c) * n + i]);
+        const double moved = std::abs(problem.free_opening[row]) + std::abs(solution.opening[row] - problem.free_opening[row]);
+        of_row[row] = slope * moved + std::abs(solution.force[row]);
+      }
+  }
   double sum = 0;
   for (Index j = 0; j < model.factor.cols(); ++j) {
     const double* column = model.factor.data() + j * model.factor.rows();
-    double component = std::abs(solution.z[j]);
-    for (std::size_t b = 0; b < model.blocks.size(); ++b) {
-      const Block& block = model.blocks[b];
-      const double* slopes = work.slope.data() + work.first_slope[b];
-      const int n = block.batch.points, components = block.batch.components;
-      for (int c = 0; c < components; ++c)
-        for (int i = 0; i < n; ++i) {
-          const Index row = block.first + c * n + i;
-          const double slope = std::abs(slopes[(c * components + c) * n + i]);
-          const double moved = std::abs(problem.free_opening[row]) + std::abs(solution.opening[row] - problem.free_opening[row]);
-          component += std::abs(column[row]) * (slope * moved + std::abs(solution.force[row]));
-        }
-    }
-    sum += component * component;
+    Lanes component = 0;
+    for_lanes(model.factor.rows(), [&](const auto& at) { component += absolute(at(column)) * at(of_row); });
+    const double whole = std::abs(solution.z[j]) + uplift::sum(component);
+    sum += whole * whole;
   }
   return std::numeric_limits<double>::epsilon() * std::sqrt(sum);
 }

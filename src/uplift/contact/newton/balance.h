@@ -10,7 +10,7 @@ namespace uplift {
 /// back in G, and `work.direction` is overwritten.
 double balance_scale(const InterfaceProblem&, NewtonWork&, const InterfaceSolution&);
 /// Size of G that round-off in the openings alone makes [sqrt(J)]: stiff joints magnify it.
-double balance_round_off(const InterfaceProblem&, const NewtonWork&, const InterfaceSolution&);
+double balance_round_off(const InterfaceProblem&, NewtonWork&, const InterfaceSolution&);
 /// Why forces are not finite.
 std::string why_not_finite(const InterfaceProblem&, const InterfaceSolution&);
 

@@ -367,6 +367,14 @@ Outcome Newton<R>::solve(int done) {
 Outcome solve_many(const InterfaceProblem& problem, const AugmentedForce& augmented, const NewtonOptions& options, NewtonWork& work,
                    InterfaceSolution& solution) {
   const RowNewton::Result by_rows = augmented.multiplier == nullptr ? solve_by_rows(problem, options, work, solution) : RowNewton::Result{};
+  if (by_rows.converged) {
+    Outcome outcome;
+    outcome.converged = true;
+    outcome.iterations = by_rows.iterations;
+    outcome.residual = by_rows.residual;
+    work.follows = false;
+    return outcome;
+  }
   Outcome outcome = Newton<0>(problem, augmented, options, work, solution).solve(by_rows.arrived ? by_rows.iterations : 0);
   if (!by_rows.arrived) outcome.iterations += by_rows.iterations;
   return outcome;

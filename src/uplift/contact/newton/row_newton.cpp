@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uplift/contact/newton/balance.h"
 #include "uplift/contact/point_rows.h"
+#include "uplift/math/columns.h"
 #include "uplift/math/line_search.h"
 #include "uplift/math/small.h"
 
@@ -16,10 +18,11 @@ constexpr double of_change = 8;       // a chord leaves about so many times the 
 constexpr double most_contraction = 0.5;
 constexpr double price_of_reference = 10;    // factors of all rows
 constexpr int patience_with_candidate = 20;  // factors
+constexpr double negligible = 0.1;           // of what an iteration may leave: all that it takes as zero
 constexpr double same_slope = 1e-10;         // of a slope: a smaller difference is round-off
 
-double cubed(const std::vector<Index>& rows) {
-  const double n = static_cast<double>(rows.size());
+double cubed(std::size_t rows) {
+  const double n = static_cast<double>(rows);
   return n * n * n;
 }
 
@@ -43,21 +46,18 @@ void RowNewton::begin(const InterfaceProblem& problem) {
   valid_ = slow_ = follows_ = has_reference_ = from_reference_ = false;
   candidate_age_ = 0;
   for (Vector* v : {&force_, &opening_, &rest_, &moved_, &origin_force_, &origin_opening_, &opening_step_, &force_step_, &part_, &sum_,
-                    &from_, &end_, &kept_})
+                    &from_, &end_, &kept_, &product_, &apart_})
     v->setZero(rows);
-  for (std::vector<Index>* each : {&rows_, &other_rows_}) {
+  for (std::vector<Index>* each : {&rows_, &other_rows_, &bent_}) {
     each->clear();
     each->reserve(static_cast<std::size_t>(rows));
   }
-  owner_.assign(static_cast<std::size_t>(rows), 0);
+  share_ = compliance_.diagonal().cwiseMax(0).cwiseSqrt();
   places_.clear();
   Index slope = 0;
   for (const Block& block : model.blocks) {
     for (int i = 0; i < block.batch.points; ++i)
       places_.push_back({block.first + i, block.batch.points, slope + i, block.batch.components});
-    for (int row = 0; row < block.rows(); ++row)
-      owner_[static_cast<std::size_t>(block.first + row)] =
-          places_.size() - static_cast<std::size_t>(block.batch.points - row % block.batch.points);
     slope += block.slopes();
   }
   for (Vector* v : {&none_, &reference_, &candidate_, &change_}) v->setZero(slope);
@@ -80,36 +80,35 @@ double RowNewton::change_of_slopes(const Vector& slopes) const {
   return worst;
 }
 
-/// The rows whose opening has other slopes than in `from`.
-void RowNewton::rows_apart(const Vector& slopes, const Vector& from, std::vector<Index>& rows) const {
+/// The rows whose force has other slopes than in `from`, ascending.
+void RowNewton::rows_apart(const Vector& slopes, const Vector& from, std::vector<Index>& rows) {
   rows.clear();
-  const Index all = compliance_.rows();
-  for (Index row = 0; row < all; ++row) {
-    const Place& at = places_[owner_[static_cast<std::size_t>(row)]];
-    const Index c = (row - at.first) / at.stride;
-    bool apart = false;
-    for (int a = 0; a < at.components; ++a) {
-      const Index k = at.slope + (a * at.components + c) * at.stride;
-      apart = apart || std::abs(slopes[k] - from[k]) > same_slope * std::abs(from[k]);
+  double* apart = apart_.data();
+  Index first_slope = 0;
+  for (const Block& block : problem_->model->blocks) {
+    const Index n = block.batch.points, components = block.batch.components;
+    for (Index a = 0; a < components; ++a) {
+      std::fill_n(apart, n, 0.0);
+      for (Index c = 0; c < components; ++c) {
+        const double *one = slopes.data() + first_slope + (a * components + c) * n,
+                     *other = from.data() + first_slope + (a * components + c) * n;
+#pragma omp simd
+        for (Index i = 0; i < n; ++i) apart[i] = larger(apart[i], std::abs(one[i] - other[i]) - same_slope * std::abs(other[i]));
+      }
+      for (Index i = 0; i < n; ++i)
+        if (apart[i] > 0) rows.push_back(block.first + a * n + i);
     }
-    if (apart) rows.push_back(row);
+    first_slope += block.slopes();
   }
 }
 
-/// The columns `rows` of I + F change, without the other rows.
-void RowNewton::fill(const Vector& change, const Matrix& compliance, const std::vector<Index>& rows) {
-  const Index all = compliance.rows(), n = static_cast<Index>(rows.size());
-  double* sum = sum_.data();
+/// I + change * compliance, of these rows and columns.
+void RowNewton::fill(const Matrix& compliance, const std::vector<Index>& rows) {
+  const Index n = static_cast<Index>(rows.size());
   for (Index j = 0; j < n; ++j) {
-    const Index row = rows[static_cast<std::size_t>(j)];
-    const Place& at = places_[owner_[static_cast<std::size_t>(row)]];
-    const Index c = (row - at.first) / at.stride;
-    sum_.setZero();
-    for (int a = 0; a < at.components; ++a)
-      if (const double k = change[at.slope + (a * at.components + c) * at.stride]; k != 0)
-        small::add(all, k, compliance.col(at.first + a * at.stride).data(), sum);
+    slope_product(change_, compliance.col(rows[static_cast<std::size_t>(j)]).data(), product_.data());
     double* column = lu_.column(j);
-    for (Index i = 0; i < n; ++i) column[i] = sum[rows[static_cast<std::size_t>(i)]];
+    for (Index i = 0; i < n; ++i) column[i] = product_[rows[static_cast<std::size_t>(i)]];
     column[j] += 1;
   }
 }
@@ -117,17 +116,18 @@ void RowNewton::fill(const Vector& change, const Matrix& compliance, const std::
 /// F0 = (I + F k0)^-1 F of the slopes k0.
 void RowNewton::refer_to(const Vector& slopes) {
   rows_apart(slopes, none_, rows_);
-  fill(slopes, compliance_, rows_);
+  change_ = slopes;
+  fill(compliance_, rows_);
   const Index n = static_cast<Index>(rows_.size());
   has_reference_ = lu_.factorise(n);
   if (!has_reference_) return;
   reference_ = slopes;
-  for (Index j = 0; j < compliance_.cols(); ++j) {  // F0 = F (I - k0 X), (I + F k0) X = F in the rows of k0
-    for (Index i = 0; i < n; ++i) part_[i] = compliance_(rows_[static_cast<std::size_t>(i)], j);
+  for (Index j = 0; j < compliance_.cols(); ++j) {  // F0 = F (I + Q), (I + k0 F) Q = -k0 F in the rows of k0
+    slope_product(slopes, compliance_.col(j).data(), product_.data());
+    for (Index i = 0; i < n; ++i) part_[i] = -product_[rows_[static_cast<std::size_t>(i)]];
     lu_.solve(part_.data());
     sum_.setZero();
-    for (Index i = 0; i < n; ++i) sum_[rows_[static_cast<std::size_t>(i)]] = -part_[i];
-    slope_product(slopes, sum_, sum_);
+    for (Index i = 0; i < n; ++i) sum_[rows_[static_cast<std::size_t>(i)]] = part_[i];
     sum_[j] += 1;
     reference_compliance_.col(j).noalias() = compliance_ * sum_;
   }
@@ -139,7 +139,7 @@ bool RowNewton::look_for_reference(const Vector& slopes, double paid) {
   bool made = false;
   if (candidate_age_ > 0) {
     rows_apart(slopes, candidate_, other_rows_);
-    spared_ += paid - cubed(other_rows_);
+    spared_ += paid - cubed(other_rows_.size());
     const double all = static_cast<double>(compliance_.rows());
     made = spared_ > price_of_reference * all * all * all;
     if (made) refer_to(candidate_);
@@ -163,29 +163,35 @@ void RowNewton::choose_rows(const Vector& slopes) {
   if (from_reference_) rows_.swap(other_rows_);
 }
 
-/// I + F k in the rows that k needs, or I + F0 (k - k0).
+/// I + (k - k0) F0 in the rows that need it, or I + k F.
 bool RowNewton::factorise(const Vector& slopes) {
   valid_ = false;
   if (!slopes.allFinite()) return false;
   choose_rows(slopes);
-  if (look_for_reference(slopes, cubed(rows_))) choose_rows(slopes);
+  if (look_for_reference(slopes, cubed(rows_.size()))) choose_rows(slopes);
   slopes_ = slopes;
   change_ = slopes - (from_reference_ ? reference_ : none_);
-  fill(change_, from_reference_ ? reference_compliance_ : compliance_, rows_);
+  fill(from_reference_ ? reference_compliance_ : compliance_, rows_);
   valid_ = lu_.factorise(static_cast<Index>(rows_.size()));
   return valid_;
 }
 
-/// k times the changes of the openings; both may be the same vector.
-void RowNewton::slope_product(const Vector& slopes, const Vector& moved, Vector& force) const {
-  for (const Place& at : places_) {
-    double step[most_components];
-    for (int c = 0; c < at.components; ++c) step[c] = moved[at.first + c * at.stride];
-    for (int a = 0; a < at.components; ++a) {
-      double sum = 0;
-      for (int c = 0; c < at.components; ++c) sum += slopes[at.slope + (a * at.components + c) * at.stride] * step[c];
-      force[at.first + a * at.stride] = sum;
+/// k times the changes of the openings.
+void RowNewton::slope_product(const Vector& slopes, const double* moved, double* force) const {
+  Index first_slope = 0;
+  for (const Block& block : problem_->model->blocks) {
+    const Index n = block.batch.points, components = block.batch.components;
+    for (Index a = 0; a < components; ++a) {
+      double* sum = force + block.first + a * n;
+      const double* slope = slopes.data() + first_slope + a * components * n;
+      std::fill_n(sum, n, 0.0);
+      for (Index c = 0; c < components; ++c, slope += n) {
+        const double* step = moved + block.first + c * n;
+#pragma omp simd
+        for (Index i = 0; i < n; ++i) sum[i] += slope[i] * step[i];
+      }
     }
+    first_slope += block.slopes();
   }
 }
 
@@ -195,29 +201,38 @@ bool RowNewton::direction(const Vector& slopes, InterfaceSystems& counts) {
   const bool keeps = contraction < most_contraction && std::log(std::max(aim_ / size_, 1e-300)) > worth_a_factor * std::log(contraction);
   ++(keeps ? counts.iterated : counts.factored);
   if (!keeps && !factorise(slopes)) return false;
+  const Matrix& compliance = from_reference_ ? reference_compliance_ : compliance_;
+  bent_.clear();
+  const double least = negligible * aim_ / std::sqrt(static_cast<double>(rest_.size()));
+  for (Index row = 0; row < rest_.size(); ++row)
+    if (std::abs(rest_[row]) * share_[row] > least) bent_.push_back(row);
+  moved_.setZero();
+  add_columns_of(compliance, 1, bent_, rest_.data(), moved_.data());
   const Index n = static_cast<Index>(rows_.size());
-  if (from_reference_) opening_step_.noalias() = reference_compliance_ * rest_;
-  const Vector& moved = from_reference_ ? opening_step_ : moved_;  // F0 s
-  for (Index i = 0; i < n; ++i) part_[i] = -moved[rows_[static_cast<std::size_t>(i)]];
+  slope_product(change_, moved_.data(), product_.data());
+  for (Index i = 0; i < n; ++i) part_[i] = -product_[rows_[static_cast<std::size_t>(i)]];
   lu_.solve(part_.data());
+  force_step_ = rest_;
   sum_.setZero();
-  for (Index i = 0; i < n; ++i) sum_[rows_[static_cast<std::size_t>(i)]] = part_[i];
-  slope_product(change_, sum_, sum_);
-  force_step_ = rest_ + sum_;
-  if (from_reference_) {
-    opening_step_.noalias() = reference_compliance_ * force_step_;
-    slope_product(reference_, opening_step_, sum_);
-    force_step_ -= sum_;
+  for (Index i = 0; i < n; ++i) {
+    const Index row = rows_[static_cast<std::size_t>(i)];
+    sum_[row] = part_[i];
+    force_step_[row] += part_[i];
   }
-  opening_step_.noalias() = compliance_ * force_step_;
-  opening_step_ *= -1;
+  opening_step_ = -moved_;
+  add_columns_of(compliance, -1, rows_, sum_.data(), opening_step_.data());
+  if (from_reference_) {
+    slope_product(reference_, opening_step_.data(), product_.data());
+    force_step_ += product_;
+  }
   return opening_step_.allFinite();
 }
 
-/// s, F s and |G| where the laws have been evaluated.
+/// How large s is where the laws have been evaluated.
 void RowNewton::measure() {
-  moved_.noalias() = compliance_ * rest_;
-  size_ = std::sqrt(std::max(0.0, rest_.dot(moved_)));
+  double sum = 0;
+  for (Index row = 0; row < rest_.size(); ++row) sum += rest_[row] * rest_[row] * share_[row] * share_[row];
+  size_ = std::sqrt(sum);
 }
 
 /// Goes to origin + alpha step: forces, openings, laws and s.
@@ -229,25 +244,68 @@ void RowNewton::look(double alpha, NewtonWork& work, InterfaceSolution& solution
   rest_ = solution.force - force_;
 }
 
+/// Where friction or softening leave no potential: the step is shortened until s falls.
+void RowNewton::shorten(double before, NewtonWork& work, InterfaceSolution& solution) {
+  constexpr int most_halvings = 12;
+  double alpha = 1;
+  for (int trial = 0; trial < most_halvings; ++trial) {
+    alpha *= 0.5;
+    look(alpha, work, solution);
+    measure();
+    if (size_ <= (1 - 1e-3 * alpha) * before) break;
+  }
+}
+
+/// Coordinates of the forces, openings and laws at them, and G = z + C^T p = C^T s.
+void RowNewton::look_at_coordinates(NewtonWork& work, InterfaceSolution& solution) {
+  const Matrix& c = problem_->model->factor;
+  solution.z.noalias() = c.transpose() * force_;
+  solution.z *= -1;
+  opening_ = problem_->free_opening;
+  opening_.noalias() += c * solution.z;
+  solution.opening = opening_;
+  evaluate_laws(*problem_, {}, true, work, solution);
+  rest_ = solution.force - force_;
+  work.gradient.noalias() = c.transpose() * rest_;
+}
+
+/// Whether the forces that the iteration has arrived at solve the problem, by the measure of the general method.
+bool RowNewton::is_solution(double tolerance, NewtonWork& work, InterfaceSolution& solution, Result& result) {
+  look_at_coordinates(work, solution);
+  const double size = work.gradient.norm(), scale = balance_scale(*problem_, work, solution);
+  result.residual = size / std::max(scale, 1e-300);
+  const double noise = 8 * std::sqrt(static_cast<double>(solution.z.size()));
+  result.converged = size <= tolerance * scale || (result.residual <= 1e-9 && size <= noise * balance_round_off(*problem_, work, solution));
+  return result.converged;
+}
+
 /// Iterations until s is round-off. In the first one s belongs to the tangents of the laws at another opening.
-bool RowNewton::arrive(double tolerance, NewtonWork& work, InterfaceSolution& solution, int& iterations) {
+bool RowNewton::iterate(double tolerance, NewtonWork& work, InterfaceSolution& solution, Result& result) {
   measure();
   for (int k = 0; k < most_iterations; ++k) {
     if (!std::isfinite(size_)) return false;
     const double reference = std::sqrt(std::max(0.0, force_.dot(problem_->free_opening - opening_)));  // |z|
-    if (k > 0 && size_ <= tolerance * reference) return true;
+    aim_ = 0.1 * tolerance * reference;
+    if (k > 0 && size_ <= aim_) {
+      if (is_solution(tolerance, work, solution, result)) return true;
+      measure();
+      if (size_ <= aim_) return true;
+    }
     const double before = size_;
-    aim_ = tolerance * reference;
     if (!direction(work.slope, solution.systems)) return false;
-    ++iterations;
+    ++result.iterations;
     LineSearch search(k > 0 && k < patience ? -rest_.dot(opening_step_) : 0);  // G . d = s . dg
     origin_force_ = force_;
     origin_opening_ = opening_;
     do look(search.share(), work, solution);
     while (search.goes_on(-rest_.dot(opening_step_)));
     measure();
+    if (k >= patience && size_ > before) shorten(before, work, solution);
     slow_ = size_ > 0.3 * before;
-    if (size_ <= 1e-10 * reference && slow_) return true;  // round-off
+    if (size_ <= 1e-10 * reference && slow_) {  // round-off
+      is_solution(tolerance, work, solution, result);
+      return true;
+    }
   }
   return false;
 }
@@ -267,7 +325,7 @@ void RowNewton::guess(NewtonWork& work, InterfaceSolution& solution) {
   origin_opening_.noalias() = compliance_ * force_;
   origin_opening_ = problem.free_opening - origin_opening_;
   opening_step_ = origin_opening_ - opening_;
-  slope_product(work.slope, opening_step_, rest_);
+  slope_product(work.slope, opening_step_.data(), rest_.data());
   opening_ = origin_opening_;
 }
 
@@ -277,10 +335,8 @@ RowNewton::Result RowNewton::solve(const InterfaceProblem& problem, double toler
   kept_ = solution.z;
   if (!problem.free_opening.allFinite()) return result;
   guess(work, solution);
-  follows_ = result.arrived = arrive(0.1 * tolerance, work, solution, result.iterations);
+  follows_ = result.arrived = iterate(tolerance, work, solution, result);
   if (result.arrived) {
-    solution.z.noalias() = problem.model->factor.transpose() * solution.force;
-    solution.z *= -1;
     from_ = problem.from;
     end_ = opening_;
   } else {

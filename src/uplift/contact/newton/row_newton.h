@@ -7,18 +7,19 @@
 namespace uplift {
 
 /// Newton's method for laws on some hundred independent rows, in the openings g and the forces P of the rows instead of the coordinates z:
-///     g = free opening - F P always,        s = p(g) - P, zero at the solution        F = C C^T
+///     g = free opening - F P        s = p(g) - P, zero at the solution        F = C C^T
 ///     (I + F k) dg = -F s        dP = s + k dg
-/// Openings and forces are changed by one product with F each, the laws give p and k, and s has only entries where a law bends on its way.
-/// G = C^T s of Newton's method in z (newton.h), so that |G|^2 = s . F s, and G . d = s . dg: the line search is by the same slope.
+/// With the slopes k0 of a reference, its compliance F0 = (I + F k0)^-1 F, and q = (k - k0) dg,
+///     (I + (k - k0) F0) q = -(k - k0) F0 s        dg = -F0 (s + q)        dP = s + q + k0 dg
+/// The matrix has only the rows whose force has other slopes than in the reference (none: k0 = 0, F0 = F): of a point that slides the
+/// tangential ones, of one that stays as it was none. A reference is made when the last factors would have been cheaper with it by as much
+/// as it costs. The factor is kept, over iterations and steps, while no slope has left that of the factor by much: the iteration is then
+/// that of a chord. It begins where the points come to when they move on as in the last step.
 ///
-/// The matrix has only the rows whose force depends on an opening (the others are open): k = change in few rows. The same holds with other
-/// slopes k0 to change from, those of a reference, and its compliance F0 = (I + F k0)^-1 F,
-///     (I + F0 (k - k0)) dg = -F0 s,
-/// which is the smaller matrix where most points are as they were. A reference is made when the last factors would have been cheaper with
-/// it by as much as it costs. The factor is kept, over iterations and steps, while no slope has left that of the factor by much: the
-/// iteration is then that of a chord. It begins where the points come to when they move on as in the last step. It is no method of its
-/// own: where it does not arrive soon, the general method starts anew.
+/// s, too, has only entries where a law bends on its way; those that cannot matter are taken as zero, so that a product with F0 costs as
+/// many columns as there are others. The openings follow from dg, whose round-off is that of F0; where the iteration has arrived they are
+/// made anew from the coordinates, z = -C^T P, and the residual |C^T s| is that of Newton's method in z. It is no method of its own: where
+/// it does not arrive soon, the general method starts anew.
 class RowNewton final : public MethodWork {
  public:
   /// Beyond so many rows iterations of Krylov's kind are faster than factors (PointRows).
@@ -26,8 +27,10 @@ class RowNewton final : public MethodWork {
   static bool suits(const ContactModel&);
 
   struct Result {
-    bool arrived = false;
+    bool arrived = false;    // the guess of the general method is better than it was
+    bool converged = false;  // and it needs none
     int iterations = 0;
+    double residual = 0;
   };
   /// Solves from the guess in solution.z, or from the last step. Leaves z, forces and slopes at the solution; the guess in its place where
   /// it does not arrive.
@@ -43,25 +46,28 @@ class RowNewton final : public MethodWork {
   void begin(const InterfaceProblem&);
   void guess(NewtonWork&, InterfaceSolution&);
   double change_of_slopes(const Vector& slopes) const;
-  void rows_apart(const Vector& slopes, const Vector& from, std::vector<Index>& rows) const;
-  void fill(const Vector& change, const Matrix& compliance, const std::vector<Index>& rows);
+  void rows_apart(const Vector& slopes, const Vector& from, std::vector<Index>& rows);
+  void fill(const Matrix& compliance, const std::vector<Index>& rows);
   bool look_for_reference(const Vector& slopes, double paid);
   void refer_to(const Vector& slopes);
   void choose_rows(const Vector& slopes);
   bool factorise(const Vector& slopes);
-  void slope_product(const Vector& slopes, const Vector& moved, Vector& force) const;
+  void slope_product(const Vector& slopes, const double* moved, double* force) const;
   bool direction(const Vector& slopes, InterfaceSystems& counts);
   void look(double alpha, NewtonWork&, InterfaceSolution&);
   void measure();
-  bool arrive(double tolerance, NewtonWork&, InterfaceSolution&, int& iterations);
+  void shorten(double before, NewtonWork&, InterfaceSolution&);
+  void look_at_coordinates(NewtonWork&, InterfaceSolution&);
+  bool iterate(double tolerance, NewtonWork&, InterfaceSolution&, Result&);
+  bool is_solution(double tolerance, NewtonWork&, InterfaceSolution&, Result&);
 
   const InterfaceProblem* problem_ = nullptr;
   SeenModel seen_;
   Matrix compliance_;  // F
   std::vector<Place> places_;
   LuInPlace lu_;
-  std::vector<std::size_t> owner_;        // of a row: its place
   std::vector<Index> rows_, other_rows_;  // of the factor, ascending
+  std::vector<Index> bent_;               // rows where s is not zero
   Vector slopes_, change_;                // of the factor, as in NewtonWork; less those of the reference where it is one of its changes
   bool valid_ = false, slow_ = false, follows_ = false;
   Matrix reference_compliance_;          // F0
@@ -69,11 +75,13 @@ class RowNewton final : public MethodWork {
   bool has_reference_ = false, from_reference_ = false;
   double spared_ = 0;  // by the candidate, had it been the reference; cubes of rows
   int candidate_age_ = 0;
-  Vector force_, opening_, rest_, moved_;          // P, g, s, F s
+  Vector force_, opening_, rest_, moved_;          // P, g, s, F0 s
+  Vector share_;                                   // sqrt(F_ii)
+  Vector product_, apart_;                         // work space: k dg; of rows_apart
   Vector origin_force_, origin_opening_, kept_;    // where a line search begins; the guess
   Vector opening_step_, force_step_, part_, sum_;  // dg, dP; k dg
   Vector from_, end_;                              // the last step
-  double aim_ = 0, size_ = 0;                      // |G|
+  double aim_ = 0, size_ = 0;                      // sum of F_ii s_i^2, its root [sqrt(J)]; bounds |C^T s| as far as rows are apart
 };
 
 /// By RowNewton where that suits the problem, from the work space of Newton's method.
