@@ -103,7 +103,7 @@ void Condensed::free_opening(const Vector& right, const Vector& displacement) {
     if (full_b_.size() > 0)
       problem_.free_opening.noalias() += full_b_ * touched_value_;
     else
-      problem_.free_opening += b_ * touched_value_;
+      problem_.free_opening.noalias() += b_ * touched_value_;
     return;
   }
   if (to_free_increment_.size() > 0) {

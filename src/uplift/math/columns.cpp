@@ -12,8 +12,10 @@ void add_rows(const double* a, std::ptrdiff_t stride, double scale, const std::v
   for (const Index j : chosen) {
     const double* column = a + j * stride;
     const Lanes factor = x[j];
+#pragma GCC unroll 8
     for (int k = 0; k < registers; ++k) sums[k] += factor * WholeLanes{k * lanes}(column);
   }
+#pragma GCC unroll 8
   for (int k = 0; k < registers; ++k) {
     const WholeLanes at{k * lanes};
     at.put(y, at(y) + scale * sums[k]);

@@ -17,11 +17,12 @@ constexpr Index together = 2 * lanes;  // rows; columns are so long that whole g
 
 /// Row of the largest entry of a column from row `first` on, of those before `end`.
 Index largest_entry(const double* column, Index first, Index end) {
-  double most = -1;
+  double most = 0;
+#pragma omp simd reduction(max : most)
+  for (Index i = first; i < end; ++i) most = larger(most, absolute(column[i]));
   Index row = first;
-  for (Index i = first; i < end; ++i)
-    if (const double size = std::abs(column[i]); size > most) most = size, row = i;
-  return row;
+  while (row < end && absolute(column[row]) < most) ++row;
+  return row < end ? row : first;
 }
 
 /// Elimination in the columns of a panel alone, from its first row `first` on.
@@ -51,28 +52,46 @@ void exchange(double* column, Index first, Index columns, const int* swaps) {
     if (swaps[k] != k) std::swap(column[k], column[swaps[k]]);
 }
 
-/// Some columns on the right of a whole panel: the same exchanges and elimination.
+/// The inverse of the unit lower triangle of a panel: its columns one after another.
+void invert_triangle(const double* panel, Index stride, Index first, double* inverse) {
+  for (Index j = 0; j < width; ++j) {
+    double* x = inverse + j * width;
+    std::fill_n(x, width, 0.0);
+    x[j] = 1;
+    for (Index k = j; k + 1 < width; ++k)
+      for (Index i = k + 1; i < width; ++i) x[i] -= panel[k * stride + first + i] * x[k];
+  }
+}
+
+/// Some columns on the right of a whole panel: the same exchanges and elimination. `inverse`: of its triangle.
 template <int count>
-void follow(const double* panel, Index stride, Index first, Index n, const int* swaps, double* columns) {
+void follow(const double* panel, const double* inverse, Index stride, Index first, Index n, const int* swaps, double* columns) {
   for (int c = 0; c < count; ++c) {
     double* column = columns + c * stride;
     exchange(column, first, width, swaps);
-    for (Index k = 0; k + 1 < width; ++k)
-      for (Index i = k + 1; i < width; ++i) column[first + i] -= panel[k * stride + first + i] * column[first + k];
+    double top[width] = {};
+    for (Index k = 0; k < width; ++k)
+#pragma omp simd
+      for (Index i = 0; i < width; ++i) top[i] += inverse[k * width + i] * column[first + k];
+    std::copy_n(top, width, column + first);
   }
   for (Index row = first + width; row < n; row += together) {
     const WholeLanes upper{row}, lower{row + lanes};
-    Lanes sums[2 * count];
-    for (int c = 0; c < count; ++c) sums[2 * c] = upper(columns + c * stride), sums[2 * c + 1] = lower(columns + c * stride);
+    Lanes high[count], low[count];  // in registers
+#pragma GCC unroll 8
+    for (int c = 0; c < count; ++c) high[c] = upper(columns + c * stride), low[c] = lower(columns + c * stride);
+#pragma GCC unroll 8
     for (Index k = 0; k < width; ++k) {
       const Lanes one = upper(panel + k * stride), two = lower(panel + k * stride);
+#pragma GCC unroll 8
       for (int c = 0; c < count; ++c) {
         const Lanes factor = columns[c * stride + first + k];
-        sums[2 * c] -= factor * one;
-        sums[2 * c + 1] -= factor * two;
+        high[c] -= factor * one;
+        low[c] -= factor * two;
       }
     }
-    for (int c = 0; c < count; ++c) upper.put(columns + c * stride, sums[2 * c]), lower.put(columns + c * stride, sums[2 * c + 1]);
+#pragma GCC unroll 8
+    for (int c = 0; c < count; ++c) upper.put(columns + c * stride, high[c]), lower.put(columns + c * stride, low[c]);
   }
 }
 
@@ -92,10 +111,13 @@ bool LuInPlace::factorise(Index n) {
     const Index columns = std::min(width, n - first);
     eliminate(a, stride, first, columns, n, swaps_.data());
     for (Index j = 0; j < first; ++j) exchange(a + j * stride, first, columns, swaps_.data());
+    Index j = first + columns;
+    if (j == n) break;  // else the panel is whole
     const double* panel = a + first * stride;
-    Index j = first + columns;  // there are others only where the panel is whole
-    for (; j + 4 <= n; j += 4) follow<4>(panel, stride, first, n, swaps_.data(), a + j * stride);
-    for (; j < n; ++j) follow<1>(panel, stride, first, n, swaps_.data(), a + j * stride);
+    double inverse[width * width];
+    invert_triangle(panel, stride, first, inverse);
+    for (; j + 4 <= n; j += 4) follow<4>(panel, inverse, stride, first, n, swaps_.data(), a + j * stride);
+    for (; j < n; ++j) follow<1>(panel, inverse, stride, first, n, swaps_.data(), a + j * stride);
   }
   const auto pivots = matrix_.diagonal().head(n).cwiseAbs();
   // whatever is not finite in the matrix reaches a pivot
