@@ -115,4 +115,49 @@ TEST(ContactRows, FactorsHaveTheRowsThatChangeAlone) {
   }
 }
 
+/// A pressed base that slides in a circle: what changes are the slopes of the two tangential forces of every point; its pressure keeps the
+/// slope of the closed joint.
+TEST(ContactRows, SlidingPointsChangeTheirTangentialForcesAlone) {
+  for (const bool average : {false, true}) {
+    std::mt19937 random(average ? 4 : 3);
+    Own anew, kept;
+    const Matrix factor = factor_of(random);
+    for (Own* own : {&anew, &kept}) {
+      own->laws.push_back(law_of({"springs", 0.4}, 1e7));
+      own->add("base", points, components, std::vector<double>(points, 0.5)).law = own->laws.back().get();
+      own->problem.old.setZero(own->laws.back()->num_history(components) * points);
+      own->set(factor, Vector::Zero(rows));
+      own->change().average = average;
+      own->change().scale = average ? 2 : 1;
+    }
+    anew.change().solver = InterfaceSolver::direct;
+    const auto newton = method("newton");
+    const auto anew_work = newton->make_work(), kept_work = newton->make_work();
+    InterfaceSolution a, b;
+    Index order = 0, sliding = 0;
+    for (int step = 0; step < 120; ++step) {
+      Vector moved = Vector::Zero(rows);
+      for (Index i = 0; i < points; ++i) {
+        moved[i] = 3e-5 * std::cos(0.1 * step), moved[points + i] = 3e-5 * std::sin(0.1 * step);
+        moved[2 * points + i] = -1e-5;
+      }
+      anew.problem.free_opening = kept.problem.free_opening = moved;
+      ASSERT_TRUE(newton->solve(anew.problem, *anew_work, a).converged && newton->solve(kept.problem, *kept_work, b).converged) << step;
+      EXPECT_LT((a.opening - b.opening).norm(), 1e-9 * (moved.norm() + a.opening.norm())) << step;
+      EXPECT_LE(contact_residual(kept.problem, b), 1e-9) << step;
+      if (step >= 60) {
+        order = std::max(order, static_cast<const RowNewton&>(*static_cast<const NewtonWork&>(*kept_work).rows).order());
+        EXPECT_LT(b.force.tail(points).maxCoeff(), 0) << "some point is open";
+        for (Index i = 0; i < points; ++i)
+          sliding += std::hypot(b.force[i], b.force[points + i]) > 0.39 * std::abs(b.force[2 * points + i]);
+      }
+      anew.problem.from = kept.problem.from = a.opening;
+      anew.problem.old = kept.problem.old = a.now;
+    }
+    EXPECT_GT(sliding, 30 * points);
+    EXPECT_GT(order, points);
+    EXPECT_LE(order, 2 * points);
+  }
+}
+
 }  // namespace uplift::contact_test::contact_rows_test
