@@ -34,8 +34,10 @@ struct Oscillator {
 };
 
 /// The gap closes `early` steps before the end of a step.
-std::string dropped(double step, const std::string& method, double early = 1e-6, const Oscillator& of = {}) {
-  const double stiffness = m * std::pow(2 * std::numbers::pi * of.frequency, 2), gap = v * (landing - early * step);
+/// Until the landing the step may be another one (`before` > 0), in a stage of its own.
+std::string dropped(double step, const std::string& method, double early = 1e-6, const Oscillator& of = {}, double before = 0,
+                    const std::string& scheme = "") {
+  const double stiffness = m * std::pow(2 * std::numbers::pi * of.frequency, 2), gap = v * (landing - early * (before > 0 ? before : step));
   return "title = \"Damped impact\"\nmethod = \"" + method +
          "\"\n[nodes]\nhead = [0, 1]\nbase = [0, 0]\n[[beam]]\nname = \"spring\"\nnodes = [\"base\", \"head\"]\nE = " + number(stiffness) +
          "\nA = 1\nI = 1\n[[mass]]\nname = \"head\"\nnode = \"head\"\nmass = " + number(m) +
@@ -47,16 +49,18 @@ std::string dropped(double step, const std::string& method, double early = 1e-6,
          "]\nvelocity = [0, " + number(-v) +
          "]\n[[dashpot]]\nname = \"dashpot\"\nnodes = [\"base\", \"head\"]\ndirection = [0, 1]\ndamping = " +
          number(2 * of.ratio * m * 2 * std::numbers::pi * of.frequency) +
-         "\n[[stage]]\ntype = \"dynamic\"\nduration = " + number(landing + 0.03) + "\nstep = " + number(step) +
+         (before > 0 ? "\n[[stage]]\ntype = \"dynamic\"\nduration = " + number(landing) + "\nstep = " + number(before) : "") +
+         "\n[[stage]]\ntype = \"dynamic\"\nduration = " + number(before > 0 ? 0.03 : landing + 0.03) + "\nstep = " + number(step) + scheme +
          "\n[energy]\ncreated_limit = 1e9\n[output]\nframes = 0\n"
-         "history = [{ name = \"y\", node = \"head\", quantity = \"uy\" }, { name = \"force\", interface = \"ground\", quantity = "
+         "history = [{ name = \"y\", node = \"head\", quantity = \"uy\" }, { name = \"a\", node = \"head\", quantity = \"ay\" }, { name = "
+         "\"force\", interface = \"ground\", quantity = "
          "\"axial\" }]\n";
 }
 
 }  // namespace
 
-// Claim: motion and energy after the impact are of second order in the step: the next step begins with the acceleration that balances the
-// forces at the velocity after the impact, damping included, as far as the step resolves it.
+// Claim: the motion after the impact is of second order in the step, and so is the energy that the impact takes. The force on the foot
+// right after it contains the damping.
 TEST(DampedImpact, MassOnASpringThatLands) {
   VERIFIES({"Impact", "Impact of a damped oscillator", "closed form of the damped oscillator, no restitution"});
   for (const std::string method : {"lagrange", "augmented_lagrangian"}) {
@@ -119,6 +123,46 @@ TEST(DampedImpact, OverdampedMassStopsWithItsFoot) {
         VERIFY_LE("energy created over that before the landing", "1", run.peak("energy.residual") / before, 1e-10);
         VERIFY_NEAR("energy that impact and damping take over that before", "1",
                     (run["energy.impact"].back() + run["energy.damping"].back()) / before, 1, 4 / (z * z) + 1e-3);
+      }
+}
+
+// Claim: second order too with HHT, and where the step changes right after the impact: what the step after an impact takes back belongs to
+// the step of the impact.
+TEST(DampedImpact, OtherSchemesAndOtherSteps) {
+  VERIFIES({"Impact", "Impact of a damped oscillator: HHT, and a step that changes at the impact",
+            "closed form of the damped oscillator, no restitution"});
+  const auto order = [](double shorter, const std::string& scheme) {
+    std::vector<double> error;
+    for (const double step : {5e-4, 2.5e-4}) {
+      const History run = run_text(dropped(step, "lagrange", 1e-6, {}, shorter > 0 ? step / shorter : 0, scheme));
+      EXPECT_EQ(run.status, "completed") << run.reason;
+      error.push_back(0);
+      for (std::size_t i = 0; i < run.rows(); ++i)
+        if (const double t = run.time()[i] - landing; t > -1e-9) error.back() = std::max(error.back(), std::abs(run["y"][i] - y(t)));
+    }
+    return std::log2(error[0] / error[1]);
+  };
+  VERIFY_NEAR("order with HHT", "1", order(0, "\nscheme = { type = \"hht\", alpha = -0.1 }"), 2, 0.15);
+  VERIFY_NEAR("order where the step is four times longer after the impact", "1", order(4, ""), 2, 0.1);
+  VERIFY_NEAR("order where it is sixteen times longer", "1", order(16, ""), 2, 0.1);
+}
+
+// Claim: the force on the foot, which rests on the plane, is the mass times the acceleration of the head at every instant, that of the
+// landing too: the state that is reported is in equilibrium, whatever part of the damping force the step resolves.
+TEST(DampedImpact, ReportedStatesAreInEquilibrium) {
+  VERIFIES({"Impact", "Equilibrium of the states after a damped impact", "Newton's second law"});
+  for (const Oscillator& of : {Oscillator{}, Oscillator{10, 1600}, Oscillator{1800, 5.4}})
+    for (const std::string law : {"unilateral", "coulomb"})
+      for (const double early : {1e-6, 0.5}) {
+        std::string text = dropped(1e-3, "lagrange", early, of);
+        if (law == "coulomb") text.replace(text.find("law = \"unilateral\""), 18, "law = { type = \"coulomb\", friction = 0.5 }");
+        const History run = run_text(text);
+        ASSERT_EQ(run.status, "completed") << run.reason;
+        double worst = 0, peak = 0;
+        for (std::size_t i = 0; i < run.rows(); ++i)
+          if (run["force"][i] < 0)  // the foot rests
+            worst = std::max(worst, std::abs(run["force"][i] + m * run["a"][i])), peak = std::max(peak, -run["force"][i]);
+        VERIFY_LE("difference of force and mass times acceleration over the largest force", "1", worst / peak, 1e-9);
       }
 }
 

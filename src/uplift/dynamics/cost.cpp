@@ -67,7 +67,7 @@ BulkCost predict_bulk(const Model& model, const LinearSolver& solver, const Bulk
   cost.matrix_bytes = bytes_of(model.stiffness) + bytes_of(model.mass) + bytes_of(model.damping) + distributed_bytes(model);
   // SymmetricPair: half the entries, 20 bytes each
   const double pair = solver.distributed() ? 0 : 10 * static_cast<double>(model.stiffness.nonZeros()) + 24 * n;
-  const double steps = use.step_sizes + (use.propagates ? 1 : 0);
+  const double steps = (use.propagates ? 2 : 1) * use.step_sizes;
   const double blocks = interface_blocks(rows, static_cast<double>(cost.touched));
   cost.interface_bytes = (steps + (use.impacts ? 1 : 0)) * blocks;
   const double kept = (use.keeps_mass ? cost.mass.bytes : 0) + steps * cost.step.bytes + cost.interface_bytes + pair + 25 * 8 * n;

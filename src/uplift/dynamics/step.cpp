@@ -341,7 +341,7 @@ bool Stepper::try_step(Level& level) {
     friction_step_ = friction_work(last_->model->blocks, now_, next_);
     if (impacts_) apply_impact(level);
     small::copy(contact_.size(), contact_.data(), next_.force.data());
-    small::copy(contact_.size(), lags_next_ ? reported_.data() : contact_.data(), next_.mean_force.data());
+    small::copy(contact_.size(), contact_.data(), next_.mean_force.data());
     if (impacts_ && impact_.force_includes_impulse()) next_.mean_force += impulse_ / level.step;
   }
   return true;
@@ -350,14 +350,14 @@ bool Stepper::try_step(Level& level) {
 bool Stepper::substep(int halving) {
   Level& now = level(halving);
   const double impact_before = impact_loss_;
+  begin_kick(now);
   if (try_step(now)) {
     book_energies(now);
     now_.swap(next_);
     force_now_.swap(force_next_);
     stiff_now_.swap(stiff_next_);
     momentum_now_.swap(momentum_next_);
-    lag_.swap(lag_next_);
-    lags_ = lags_next_;
+    std::swap(kick_, kick_next_);
     if (filtered_) {
       filtered_stiff_.swap(work_);
       filtered_momentum_.swap(work2_);
@@ -370,6 +370,7 @@ bool Stepper::substep(int halving) {
   }
   impact_loss_ = impact_before;
   restore_dropped();
+  undo_kick();
   failed_step_ = now.step;
   if (now.hopeless || !mass_failure_.empty() || halving >= options_.halvings) return false;
   if (const long spent = counts_.iterations - iterations_before_; spent > most_iterations_of_a_step) {

@@ -34,12 +34,20 @@ struct StepCounts {
   int deepest = 0;  // largest number of halvings that was needed
 };
 
+/// What the step after an impact begins with beside the state, for the damping force that acted at once (docs/theory, section 5).
+struct Kick {
+  double step = 0;         // s: of the step of the impact; 0: there was none
+  Vector acceleration;     // free unknowns
+  Vector force;            // rows [N]
+  Vector lag, lag_change;  // free unknowns [N]: what M times the acceleration of the state has more than the forces, and what the kick adds
+};
+
 /// What a stage hands on to the next one beside its state.
 struct Ledger {
   Energies energies;
   double initial_energy = 0, largest_external = 0;  // J
   bool acceleration = false;                        // the state's acceleration is that of the scheme and goes on
-  Vector damping_lag;                               // free unknowns: D (v' - v) of an impact at the end [N]; empty without one
+  Kick kick;                                        // of an impact in the last step
 };
 
 /// Where the march through a stage stands between two steps: a value, from which another Stepper of the same stage goes on.
@@ -72,7 +80,7 @@ class Stepper {
   /// needs none: its state has zero). With the ledger of a stage before, energies go on counting, and so does its acceleration when it is
   /// the same scheme's.
   void start(State state, const Ledger* before = nullptr);
-  Ledger ledger() const { return {energies_, initial_energy_, largest_external_, !path_, lags_ ? lag_ : Vector()}; }
+  Ledger ledger() const { return {energies_, initial_energy_, largest_external_, !path_, kick_.step > 0 ? kick_ : Kick()}; }
   /// Goes on where another Stepper of the same stage has been: takes the place of `start`. After `reenter` of that one both take the same
   /// steps to the last bit.
   void resume(MarchState from);
@@ -140,11 +148,13 @@ class Stepper {
   bool apply_rule(const Level& level, Impact& data);
   bool gap_closes() const;
   void soften(const Level& level, Vector& acceleration);
-  bool lag_damping(const Level& level);
-  void report_damping(const Level& level, Impact& data, bool with_friction);
-  void balance_pressure(const Impact& data, const Vector& acceleration);
-  void balance_friction(const Level& level, const Impact& data, const Vector& acceleration);
-  void set_lag(const Ledger& from);
+  void balance_damping(const Level& level, Impact& data, bool with_friction);
+  void balance_pressure(const Impact& data, Vector& acceleration);
+  void balance_friction(const Level& level, const Impact& data, Vector& acceleration);
+  void damp_impact(const Level& level, const Vector& velocity, Vector& acceleration);
+  void begin_kick(const Level& level);
+  void undo_kick();
+  void set_kick(const Ledger& from);
   void prepare_friction(const std::vector<Block>& blocks);
   bool drop_creating();
   void restore_dropped();
@@ -203,9 +213,8 @@ class Stepper {
   InterfaceEnergy interface_energy_;
   BulkWork impact_work_{linear_};
   Vector velocity_free_;                   // before an impact
-  bool lags_ = false, lags_next_ = false;  // an impact at the beginning, at the end of the step:
-  Vector lag_, lag_next_;                  // D (v' - v) [N]
-  Vector reported_;                        // rows: contact force after an impact with all of the damping [N]
+  Kick kick_, kick_next_;                  // of impacts at the beginning and at the end of the step
+  Kick unkicked_;                          // acceleration and force of now_ without it, and the lag with it
   std::unique_ptr<CoulombRates> coulomb_;  // null without friction, and with other rules than project_hold
   FrictionOfImpacts friction_;
   double friction_step_ = 0;  // J: work of the friction of constraints in the step

@@ -139,14 +139,19 @@ void Stepper::hold_initial_acceleration() {
 void Stepper::make_room() {
   const Eigen::Index n = bulk_.unknowns;
   for (Vector* v : {&force_now_, &force_next_, &stiff_now_, &stiff_next_, &momentum_now_, &momentum_next_, &right_, &increment_, &work_,
-                    &work2_, &damped_, &lag_, &lag_next_})
+                    &work2_, &damped_})
     v->setZero(n);
-  for (Vector* v : {&contact_, &impulse_, &reported_}) v->setZero(b_.rows());
+  contact_.setZero(b_.rows());
+  impulse_.setZero(b_.rows());
+  if (impacts_)
+    for (Kick* kick : {&kick_, &kick_next_, &unkicked_}) {
+      for (Vector* v : {&kick->acceleration, &kick->lag, &kick->lag_change}) v->setZero(n);
+      kick->force.setZero(b_.rows());
+    }
 }
 
-void Stepper::set_lag(const Ledger& from) {
-  lags_ = from.damping_lag.size() > 0;
-  if (lags_) lag_ = from.damping_lag;
+void Stepper::set_kick(const Ledger& from) {
+  if (from.kick.step > 0) kick_ = from.kick;
 }
 
 void Stepper::start(State state, const Ledger* before) {
@@ -190,7 +195,7 @@ void Stepper::start(State state, const Ledger* before) {
   initial_energy_ =
       before != nullptr ? before->initial_energy : energies_.kinetic + energies_.strain + energies_.stored + energies_.interface_dissipated;
   largest_external_ = before != nullptr ? before->largest_external : 0;
-  if (before != nullptr && before->acceleration && !path_) set_lag(*before);
+  if (before != nullptr && before->acceleration && !path_) set_kick(*before);
 }
 
 /// What follows from the present state: filtered products, forces, products with the matrices, energy of the interfaces.
@@ -221,7 +226,7 @@ void Stepper::resume(MarchState from) {
   energies_ = from.ledger.energies;
   initial_energy_ = from.ledger.initial_energy;
   largest_external_ = from.ledger.largest_external;
-  set_lag(from.ledger);
+  set_kick(from.ledger);
   impact_loss_ = energies_.impact;
   counts_ = from.counts;
   start_time_ = from.start_time;

@@ -112,14 +112,14 @@ bool Stepper::strikes(const Impact& data) {
   return goes_on(next_.velocity, data.step) || goes_on(next_.acceleration, data.step * data.step);
 }
 
-/// Velocity and acceleration by the rule of the case: impulses spread with the damping force that they change, the acceleration by the mass
-/// alone. Where a point with friction is open, friction belongs to the impulse (true); elsewhere sliding points slide on, and the rule
-/// alone is exact.
+/// Velocity and acceleration by the rule of the case: impulses spread with the damping force that they change. Where a point with friction
+/// is open, friction belongs to the impulse (true); elsewhere sliding points slide on, and the rule alone is exact.
 bool Stepper::apply_rule(const Level& level, Impact& data) {
   if (strikes(data) && impact_of_friction(level, data)) return true;
   if (level.impact != nullptr) data.mass = level.impact.get();
   impact_.apply(data, next_.velocity, impulse_, impact_scratch_);
   if (!impact_.holds_acceleration()) return false;
+  damp_impact(level, next_.velocity, next_.acceleration);
   if (level.impact != nullptr && closing_)
     soften(level, next_.acceleration);
   else
@@ -161,6 +161,7 @@ bool Stepper::impact_of_friction(const Level& level, const Impact& data) {
   const Spread& held = soft ? *level.impact : *mass_spread_;
   CoulombRates& forces = soft ? *level.coulomb : *coulomb_;
   now.after = next_.acceleration;
+  damp_impact(level, now.velocity, now.after);
   if (soft) soften(level, now.after);
   now.push.noalias() = held.factor.transpose() * now.dropped;
   held.add(data.acceleration_weight, now.push, now.after);
@@ -179,8 +180,8 @@ bool Stepper::impact_of_friction(const Level& level, const Impact& data) {
   return true;
 }
 
-/// The acceleration contains the present forces; those are sought that belong to it by Coulomb's law, as in impact_of_friction().
-void Stepper::balance_friction(const Level& level, const Impact& data, const Vector& acceleration) {
+/// The acceleration contains the present forces, and receives those that belong to it by Coulomb's law, as in impact_of_friction().
+void Stepper::balance_friction(const Level& level, const Impact& data, Vector& acceleration) {
   FrictionOfImpacts& now = friction_;
   const double time = data.velocity_weight / data.acceleration_weight;
   now.dropped.setZero(contact_.size());
@@ -190,10 +191,15 @@ void Stepper::balance_friction(const Level& level, const Impact& data, const Vec
   now.soon = next_.velocity + time * acceleration;
   level.impact->add(data.velocity_weight, now.push, now.soon);
   row_rates(data, now.soon, 0, contact_.size(), now.rates);
-  if (!level.coulomb->solve(now.rates, now.takes_part, still * closed_gap_ / data.step)) return;
+  if (!level.coulomb->solve(now.rates, now.takes_part, still * closed_gap_ / data.step)) {
+    acceleration = kick_next_.acceleration;
+    return;
+  }
+  level.impact->add(1, level.coulomb->z(), now.soon);
+  acceleration = (now.soon - next_.velocity) / time;
   for (const Block& block : last_->model->blocks)
     if (block.cone != nullptr)
-      reported_.segment(block.first, block.rows()) = level.coulomb->impulse().segment(block.first, block.rows()) / data.velocity_weight;
+      contact_.segment(block.first, block.rows()) = level.coulomb->impulse().segment(block.first, block.rows()) / data.velocity_weight;
 }
 
 }  // namespace uplift

@@ -89,7 +89,7 @@ double Stepper::contact_work() const {
 void Stepper::apply_impact(Level& level) {
   impact_impulse_.setZero();
   impulse_.setZero();
-  lags_next_ = false;
+  kick_next_.step = 0;
   impact_loss_ += contact_work();
   if (!select_pressed(last_->model->blocks, contact_)) return;
   Impact data = impact_data(contact_);
@@ -106,7 +106,7 @@ void Stepper::apply_impact(Level& level) {
   bulk_.mass.multiply(next_.velocity, momentum_next_);
   impact_loss_ += before - 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
   if (impact_.holds_acceleration() && !with_friction) separate_impulse(data);
-  if (lag_damping(level)) report_damping(level, data, with_friction);
+  if (level.impact != nullptr) balance_damping(level, data, with_friction);
 }
 
 /// The force that balances the accelerations after the impact is that of the contact: it is reported, and the next step begins with it. In
@@ -158,58 +158,93 @@ void Stepper::soften(const Level& level, Vector& acceleration) {
   level.impact_factor->solve(product_, acceleration, impact_work_);
 }
 
-/// The impulse by which an impact changes the damping force over half a step, w D (v' - v), acts at once; the acceleration contains D v,
-/// and where a gap closes w D a'. The next step takes what is too much back. False where no velocity has changed. work_: D (v' - v).
-bool Stepper::lag_damping(const Level& level) {
+/// The impulse by which an impact changes the damping force over half a step, w D (v' - v), acts at once. The state after it has the
+/// acceleration and the contact force with all of D v' that the step resolves, (M + w D) (a'' - a') = -D (v' - v) - B^T (p'' - p'); the
+/// next step begins with a' and p', which contain D v, and so takes the impulse back.
+void Stepper::balance_damping(const Level& level, Impact& data, bool with_friction) {
   constexpr double round_off = 1e-12;
-  if (level.impact == nullptr) return false;
   product_ = next_.velocity - velocity_free_;
-  if (!closing_ && product_.squaredNorm() <= round_off * round_off * next_.velocity.squaredNorm()) return false;
-  bulk_.damping.multiply(product_, work_);
-  lag_next_ = work_;
-  if (closing_) {
-    product_ = velocity_weight(level) * next_.acceleration;
-    bulk_.damping.multiply(product_, work2_);
-    lag_next_ -= work2_;
-  }
-  return lags_next_ = true;
-}
-
-/// What the contact bears after an impact contains the damping force D v', as far as the step resolves it: this is reported, and the
-/// impulse is what is left of the whole.
-void Stepper::report_damping(const Level& level, Impact& data, bool with_friction) {
-  reported_ = contact_;
-  level.impact_factor->solve(work_, work2_, impact_work_);
-  work_ = next_.acceleration - work2_;
+  if (!closing_ && product_.squaredNorm() <= round_off * round_off * next_.velocity.squaredNorm()) return;
+  Kick& kick = kick_next_;
+  kick.step = level.step;
+  kick.acceleration = next_.acceleration;
+  kick.force = contact_;
+  bulk_.damping.multiply(product_, kick.lag_change);
+  level.impact_factor->solve(kick.lag_change, work2_, impact_work_);
+  next_.acceleration -= work2_;
   data.mass = level.impact.get();
   if (with_friction)
-    balance_friction(level, data, work_);
+    balance_friction(level, data, next_.acceleration);
   else
-    balance_pressure(data, work_);
+    balance_pressure(data, next_.acceleration);
+  kick.acceleration -= next_.acceleration;
+  kick.force -= contact_;
+  product_ = data.velocity_weight * kick.acceleration;
+  bulk_.damping.multiply(product_, kick.lag);
+  kick.lag_change -= kick.lag;
+  if (closing_) {
+    product_ = -data.velocity_weight * next_.acceleration;
+    bulk_.damping.multiply(product_, kick.lag);
+  }
   for (const Block& block : last_->model->blocks) {
     if (block.cone == nullptr) continue;
     for (int row = block.first + block.batch.normal(), i = 0; i < block.batch.points; ++i, ++row)
-      if (impact_impulse_[row] != 0) impact_impulse_[row] -= data.velocity_weight * (reported_[row] - contact_[row]);
+      if (impact_impulse_[row] != 0) impact_impulse_[row] += data.velocity_weight * kick.force[row];
   }
 }
 
-/// The acceleration contains the forces of the scratch.
-void Stepper::balance_pressure(const Impact& data, const Vector& acceleration) {
+/// The step after an impact takes back what damping did at once, as far as it is as long as the step of the impact.
+void Stepper::begin_kick(const Level& level) {
+  if (!(kick_.step > 0)) return;
+  const double share = std::min(1.0, kick_.step / level.step);
+  unkicked_.acceleration = now_.acceleration;
+  unkicked_.force = now_.force;
+  now_.acceleration += share * kick_.acceleration;
+  now_.force += share * kick_.force;
+  unkicked_.lag = kick_.lag + share * kick_.lag_change;
+}
+
+void Stepper::undo_kick() {
+  if (!(kick_.step > 0)) return;
+  now_.acceleration = unkicked_.acceleration;
+  now_.force = unkicked_.force;
+}
+
+/// The acceleration contains the forces of the scratch, and receives those that it needs.
+void Stepper::balance_pressure(const Impact& data, Vector& acceleration) {
   ImpactScratch& scratch = impact_scratch_;
   scratch.taken = scratch.impulse / data.acceleration_weight;
   project_rate(data, acceleration, data.acceleration_weight, Select::all, scratch);
+  correct(data, 1, acceleration, scratch);
   for (const Block& block : last_->model->blocks) {
     if (block.cone == nullptr) continue;
     const int n = block.batch.points, normal = block.first + block.batch.normal();
     const auto smooth = scratch.impulse.segment(normal, n) / data.acceleration_weight;
     if (block.cone->friction() > 0) {
       const double pressure = contact_.segment(normal, n).sum();
-      reported_.segment(block.first, block.rows()) *= pressure < 0 ? smooth.sum() / pressure : 1;
+      contact_.segment(block.first, block.rows()) *= pressure < 0 ? smooth.sum() / pressure : 1;
       continue;
     }
     for (int i = 0; i < n; ++i)
-      if (pressed_[normal + i] > 0) reported_[normal + i] = smooth[i];
+      if (pressed_[normal + i] > 0) contact_[normal + i] = smooth[i];
   }
+}
+
+/// With other schemes than the trapezoidal rule: what damping D does to the acceleration when an impact has changed the velocity,
+/// (M + d/m D) a_D = -D dv with K_eff = K + d D + m M. Solved by K_eff, with the right-hand side -D dv first and then with K/m a_D, what
+/// the first one leaves.
+void Stepper::damp_impact(const Level& level, const Vector& velocity, Vector& acceleration) {
+  if (bulk_.damping.zero() || level.impact != nullptr) return;
+  const BulkFactor* factor = level.solver->factor() != nullptr ? level.solver->factor() : level.impact_factor.get();
+  constexpr double round_off = 1e-12;
+  product_ = velocity - velocity_free_;
+  if (product_.squaredNorm() <= round_off * round_off * velocity.squaredNorm()) return;
+  bulk_.damping.multiply(product_, work_);
+  factor->solve(work_, work2_, impact_work_);
+  acceleration -= level.mass * work2_;
+  bulk_.stiffness.multiply(work2_, work_);
+  factor->solve(work_, work2_, impact_work_);
+  acceleration -= level.mass * work2_;
 }
 
 }  // namespace uplift

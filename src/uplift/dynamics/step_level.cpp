@@ -45,12 +45,17 @@ Stepper::Level& Stepper::make_level(int halving) {
   }
   const auto spread_by = [&](const OwnedSum& matrix, std::unique_ptr<Spread>& spread) {
     made.impact_factor = std::make_unique<BulkFactor>(matrix, &b_, bulk_.small, solver_, model_, linear_);
-    made.why = made.impact_factor->why();
+    if (!made.impact_factor->ok()) made.why = "the matrix of impacts: " + made.impact_factor->why();
     made.hopeless = made.impact_factor->too_large();
     if (made.why.empty()) spread = std::make_unique<Spread>(made.impact_factor->spread(b_, linear_));
   };
   if (impacts_ && impact_.needs_dynamic()) spread_by(bulk_.upper(1, 0, 4 / (dt * dt)), made.dynamic);
-  if (impacts_ && impact_.holds_acceleration() && !bulk_.damping.zero()) {
+  const bool damped = impacts_ && impact_.holds_acceleration() && !bulk_.damping.zero();
+  if (damped && !s.average_acceleration() && made.solver->factor() == nullptr) {
+    made.impact_factor = std::make_unique<BulkFactor>(upper_of(made), &b_, bulk_.small, solver_, model_, linear_);
+    made.why = made.impact_factor->why();
+  }
+  if (damped && s.average_acceleration()) {
     spread_by(damped_mass(velocity_weight(made)), made.impact);
     const std::vector<Block> blocks = blocks_of(model_, behaviours_).blocks;
     if (made.impact != nullptr && any_friction(blocks)) made.coulomb = std::make_unique<CoulombRates>(blocks, made.impact->factor);
@@ -67,10 +72,10 @@ double Stepper::velocity_weight(const Level& level) const {
 OwnedSum Stepper::damped_mass(double w) const {
   constexpr double trace = 1e-12;
   OwnedSum sum = bulk_.upper(0, w, 1);
-  const Vector diagonal = bulk_.mass_matrix.diagonal() + w * bulk_.damping_matrix.diagonal();
+  const Vector diagonal = bulk_.mass_matrix.diagonal() + w * bulk_.damping_matrix.diagonal() + w * w * bulk_.stiffness_matrix.diagonal();
   std::vector<Triplet> light;
   for (int i = 0; i < bulk_.unknowns; ++i)
-    if (bulk_.massless[static_cast<std::size_t>(i)] != 0) light.emplace_back(i, i, trace * diagonal.maxCoeff());
+    if (bulk_.massless[static_cast<std::size_t>(i)] != 0) light.emplace_back(i, i, trace * diagonal[i]);
   if (light.empty()) return sum;
   Sparse here(bulk_.unknowns, bulk_.unknowns);
   here.setFromTriplets(light.begin(), light.end());

@@ -69,9 +69,14 @@ void list_parts(Archive& archive, T& e) {
   static_assert(sizeof(Energies) == 13 * sizeof(double));
 }
 
+template <class Archive, SameAs<Kick> T>
+void list_parts(Archive& archive, T& kick) {
+  archive(kick.step, kick.acceleration, kick.force, kick.lag, kick.lag_change);
+}
+
 template <class Archive, SameAs<Ledger> T>
 void list_parts(Archive& archive, T& ledger) {
-  archive(ledger.energies, ledger.initial_energy, ledger.largest_external, ledger.acceleration, ledger.damping_lag);
+  archive(ledger.energies, ledger.initial_energy, ledger.largest_external, ledger.acceleration, ledger.kick);
 }
 
 template <class Archive, SameAs<FilterMemory> T>
@@ -228,7 +233,7 @@ void list_parts(Archive& archive, T& run) {
 
 namespace {
 
-constexpr std::string_view magic = "uplift run state 3\n";
+constexpr std::string_view magic = "uplift run state 4\n";
 
 }  // namespace
 
