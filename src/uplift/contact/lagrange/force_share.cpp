@@ -23,7 +23,12 @@ void ForceShare::size(Index rows, Index r) {
   given_.setZero(rows, r);
   range_ = Orthonormal();
   range_.size(rows, r);
-  found_.setZero(rows);
+  const Index least = std::min(rows, r);
+  rows_.setZero(least, rows);
+  hessian_.setZero(least, least);
+  for (Vector* v : {&found_, &more_, &kept_}) v->setZero(rows);
+  for (Vector* v : {&rest_, &pull_}) v->setZero(r);
+  for (Vector* v : {&resultant_, &dual_, &step_, &tried_, &gradient_, &column_}) v->setZero(least);
   points_.reserve(static_cast<std::size_t>(rows));
 }
 
@@ -32,15 +37,16 @@ void ForceShare::add_given(Index row, double factor, const Matrix& factors) {
   for (Index k = 0; k < factors.cols(); ++k) given_(columns_, k) += factor * factors(row, k);
 }
 
-/// The closed points, with their forces.
+/// The closed points, with their forces. Held points may be off by the gap in each direction, and by 1e-8 of the motion for the contact
+/// residual: less than that is no slip.
 void ForceShare::list(const InterfaceProblem& problem, double gap, const InterfaceSolution& solution) {
-  constexpr double near = 1e-9, round_off = 8 * std::numeric_limits<double>::epsilon();
-  const Matrix& factor = problem.model->factor;
-  const double still =
-      std::max(round_off * solution.opening.cwiseAbs().maxCoeff(), near * (solution.opening - problem.free_opening).cwiseAbs().maxCoeff());
+  constexpr double near = 1e-8, round_off = 8 * std::numeric_limits<double>::epsilon();
+  const double still = std::max({2 * gap, round_off * solution.opening.cwiseAbs().maxCoeff(),
+                                 near * (solution.opening - problem.free_opening).cwiseAbs().maxCoeff()});
   columns_ = 0;
   points_.clear();
   given_.setZero();
+  rest_.setZero();
   for (const Block& block : problem.model->blocks) {
     if (block.cone == nullptr) continue;
     const int n = block.batch.points, tangents = block.batch.components - 1;
@@ -48,30 +54,18 @@ void ForceShare::list(const InterfaceProblem& problem, double gap, const Interfa
       Point point;
       point.first = block.first + i, point.stride = n, point.components = tangents + 1;
       const Index normal = point.first + tangents * n;
-      const double pressure = -solution.force[normal];
-      if (!(pressure > 0) && !(solution.opening[normal] <= gap)) continue;
+      if (!(solution.force[normal] < 0) && !(solution.opening[normal] <= gap)) continue;
       point.column = columns_;
       point.root = std::sqrt(block.area[i]);
       point.friction = tangents > 0 ? block.cone->friction() : 0;
-      std::array<double, 2> slip{}, force{};
-      for (std::size_t c = 0; c < static_cast<std::size_t>(tangents); ++c) {
-        const Index row = point.first + static_cast<Index>(c) * n;
-        slip[c] = solution.opening[row] - problem.from[row], force[c] = solution.force[row];
-      }
-      point.slides = !(point.friction > 0) || std::hypot(slip[0], slip[1]) > still;
+      double slip = 0;
+      for (int c = 0; c < tangents; ++c) slip = std::hypot(slip, solution.opening[point.first + c * n] - problem.from[point.first + c * n]);
+      point.slides = !(point.friction > 0) || slip > still;
       if (point.slides) {
-        const std::array<double, 2>& along = pressure > 0 ? force : slip;
-        const double length = std::hypot(along[0], along[1]), unit = 1 / std::hypot(1, point.friction);
-        for (std::size_t c = 0; c < static_cast<std::size_t>(tangents); ++c) {
-          point.ray[c] = length > 0 ? unit * point.friction * along[c] / length : 0;
-          add_given(point.first + static_cast<Index>(c) * n, point.root * point.ray[c], factor);
-        }
-        point.ray[static_cast<std::size_t>(tangents)] = -unit;
-        add_given(normal, -point.root * unit, factor);
-        found_[columns_++] = pressure / (unit * point.root);
+        add_slide(problem, solution, point);
       } else {
         for (int c = 0; c <= tangents; ++c) {
-          add_given(point.first + c * n, point.root, factor);
+          add_given(point.first + c * n, point.root, problem.model->factor);
           found_[columns_++] = solution.force[point.first + c * n] / point.root;
         }
       }
@@ -80,23 +74,53 @@ void ForceShare::list(const InterfaceProblem& problem, double gap, const Interfa
   }
 }
 
-void ForceShare::orthonormalise() {
-  range_.compute(given_, columns_, given_.cols(), 1e-12);
-  const Index rank = range_.rank();
-  if (rows_.rows() != rank || rows_.cols() != given_.rows()) {
-    rows_.setZero(rank, given_.rows());
-    hessian_.setZero(rank, rank);
-    for (Vector* v : {&resultant_, &dual_, &step_, &tried_, &gradient_, &column_}) v->setZero(rank);
+/// The ray has the direction of the friction force or, where there is none, of the slip. What of the force is off the ray goes to rest_.
+void ForceShare::add_slide(const InterfaceProblem& problem, const InterfaceSolution& solution, Point& point) {
+  const Matrix& factor = problem.model->factor;
+  const std::size_t normal = static_cast<std::size_t>(point.components - 1);
+  const double unit = 1 / std::hypot(1, point.friction);
+  std::array<double, 3> force{}, slip{};
+  for (std::size_t c = 0; c <= normal; ++c) {
+    const Index row = point.first + static_cast<Index>(c) * point.stride;
+    force[c] = solution.force[row], slip[c] = solution.opening[row] - problem.from[row];
   }
-  rows_.leftCols(columns_) = range_.basis().topLeftCorner(columns_, rank).transpose();
-  resultant_.noalias() = rows_.leftCols(columns_) * found_.head(columns_);
+  const double pressure = std::max(0.0, -force[normal]);
+  const std::array<double, 3>& along = pressure > 0 && std::hypot(force[0], normal > 1 ? force[1] : 0) > 0 ? force : slip;
+  const double length = normal == 0 ? 0 : std::hypot(along[0], normal > 1 ? along[1] : 0);
+  for (std::size_t c = 0; c < normal; ++c) point.ray[c] = length > 0 ? unit * point.friction * along[c] / length : 0;
+  point.ray[normal] = -unit;
+  for (std::size_t c = 0; c <= normal; ++c) {
+    const Index row = point.first + static_cast<Index>(c) * point.stride;
+    add_given(row, point.root * point.ray[c], factor);
+    const double off = force[c] - point.ray[c] * pressure / unit;
+    for (Index k = 0; k < factor.cols(); ++k) rest_[k] += off * factor(row, k);
+  }
+  found_[columns_++] = pressure / (unit * point.root);
+}
+
+/// In the coordinates of range_: the resultant C^T p of the forces on entry. False where the rows in use do not span it.
+bool ForceShare::find_resultant() {
+  constexpr double round_off = 1e-14, enough = 1e-11;
+  rows_.topLeftCorner(rank_, columns_) = range_.basis().topLeftCorner(columns_, rank_).transpose();
+  pull_ = rest_;
+  pull_.noalias() += given_.topRows(columns_).transpose() * found_.head(columns_);
+  const double size = pull_.norm();
+  if (rest_.norm() > round_off * size) {
+    range_.solve_transposed(rest_, more_);
+    found_.head(columns_) += more_.head(columns_);
+    pull_.noalias() -= given_.topRows(columns_).transpose() * found_.head(columns_);
+    if (!(pull_.norm() <= enough * size)) return false;
+  }
+  resultant_.setZero();
+  for (Index k = 0; k < columns_; ++k) small::add(rank_, found_[k], rows_.col(k).data(), resultant_.data());
+  return true;
 }
 
 /// The forces that belong to the dual, and gradient_ = their resultant - that found. Returns its length.
 double ForceShare::evaluate(const Vector& dual) {
   const Index r = rows_.rows();
   gradient_ = -resultant_;
-  small::with_size(r, [&](auto size) {
+  small::with_size(rank_, [&](auto size) {
     for (Point& point : points_) {
       const double* column = rows_.data() + point.column * r;
       const int count = point.slides ? 1 : point.components;
@@ -123,14 +147,18 @@ double ForceShare::evaluate(const Vector& dual) {
 }
 
 void ForceShare::add_outer(double weight, const double* column) {
-  small::with_size(rows_.rows(), [&](auto size) {
-    for (std::ptrdiff_t k = 0; k < size; ++k) small::add(size, weight * column[k], column, hessian_.data() + k * size);
+  small::with_size(rank_, [&](auto size) {
+    for (std::ptrdiff_t k = 0; k < size; ++k) small::add(size, weight * column[k], column, hessian_.col(k).data());
   });
 }
 
-/// A generalised derivative of the gradient at the dual that was evaluated last.
-void ForceShare::add_slopes() {
+/// A generalised derivative of the gradient at the dual that was evaluated last, plus a share of the identity.
+void ForceShare::fill_hessian(double share) {
   const Index r = rows_.rows();
+  for (Index k = 0; k < rank_; ++k) {
+    std::fill_n(hessian_.col(k).data(), rank_, 0.0);
+    hessian_(k, k) = share;
+  }
   for (const Point& point : points_) {
     const double* column = rows_.data() + point.column * r;
     if (point.slides) {
@@ -150,16 +178,34 @@ void ForceShare::add_slopes() {
     const double unit = 1 / std::hypot(1, mu);
     const double cosine = point.pressed[0] / along, sine = tangents == 2 ? point.pressed[1] / along : 0;
     column_.setZero();
-    small::add(r, mu * unit * cosine, column, column_.data());
-    if (tangents == 2) small::add(r, mu * unit * sine, column + r, column_.data());
-    small::add(r, -unit, column + tangents * r, column_.data());
+    small::add(rank_, mu * unit * cosine, column, column_.data());
+    if (tangents == 2) small::add(rank_, mu * unit * sine, column + r, column_.data());
+    small::add(rank_, -unit, column + tangents * r, column_.data());
     add_outer(1, column_.data());
     if (tangents < 2) continue;
     column_.setZero();
-    small::add(r, -sine, column, column_.data());
-    small::add(r, cosine, column + r, column_.data());
+    small::add(rank_, -sine, column, column_.data());
+    small::add(rank_, cosine, column + r, column_.data());
     add_outer(mu * (pressure + mu * along) / ((1 + mu * mu) * along), column_.data());
   }
+}
+
+/// Newton's: by H = U^T U in place, Cholesky column by column (Eigen's class allocates where the order changes).
+bool ForceShare::find_step() {
+  step_ = -gradient_;
+  for (Index j = 0; j < rank_; ++j) {
+    double* column = hessian_.col(j).data();
+    for (Index i = 0; i < j; ++i) column[i] = (column[i] - small::dot(i, hessian_.col(i).data(), column)) / hessian_(i, i);
+    const double rest = column[j] - small::sum_of_squares(j, column);
+    if (!(rest > 0)) return false;
+    column[j] = std::sqrt(rest);
+    step_[j] = (step_[j] - small::dot(j, column, step_.data())) / column[j];
+  }
+  for (Index j = rank_; j-- > 0;) {
+    step_[j] /= hessian_(j, j);
+    small::add(j, -step_[j], hessian_.col(j).data(), step_.data());
+  }
+  return true;
 }
 
 /// The dual of the resultant. The Hessian gets a share of the identity that vanishes with the gradient: without points that bear, or with
@@ -171,14 +217,9 @@ bool ForceShare::newton() {
   dual_ = resultant_;
   double length = evaluate(dual_), least = length;
   for (iterations_ = 0; iterations_ < most && length > round_off * size; ++iterations_) {
-    hessian_.setZero();
-    add_slopes();
-    hessian_.diagonal().array() += std::max(least_share, share * std::min(1.0, length / size));
-    cholesky_.compute(hessian_);
-    if (cholesky_->info() != Success) return false;
-    gradient_ = -gradient_;
-    cholesky_.solve(gradient_, step_);
-    LineSearch search(step_.dot(gradient_));
+    fill_hessian(std::max(least_share, share * std::min(1.0, length / size)));
+    if (!find_step()) return false;
+    LineSearch search(-step_.dot(gradient_));
     for (bool goes_on = true; goes_on;) {
       tried_ = dual_ + search.share() * step_;
       length = evaluate(tried_);
@@ -195,19 +236,32 @@ bool ForceShare::newton() {
   return length <= enough * size;
 }
 
+/// Whether the contact residual is as good as the methods' own, or as that of the force kept; else that force comes back.
+bool ForceShare::is_good(const InterfaceProblem& problem, double gap, InterfaceSolution& solution) {
+  const double moved = (solution.opening - problem.free_opening).cwiseAbs().maxCoeff();
+  residual_ = contact_residual(problem, solution, scratch_);
+  if (residual_ <= 1e-8 + (moved > 0 ? 4 * gap / moved : 1)) return true;
+  solution.force.swap(kept_);
+  if (!(residual_ <= contact_residual(problem, solution, scratch_))) return false;
+  solution.force.swap(kept_);
+  return true;
+}
+
 bool ForceShare::solve(const InterfaceProblem& problem, double gap, InterfaceSolution& solution) {
   if (problem.model->factor.cols() == 0 || PointRows::suits(*problem.model)) return false;
   size(problem.rows(), problem.model->factor.cols());
   list(problem, gap, solution);
   if (points_.empty()) return false;
-  orthonormalise();
-  if (!newton()) return false;
+  range_.compute(given_, columns_, given_.cols(), 1e-12);
+  rank_ = range_.rank();
+  if (rank_ == columns_ || !find_resultant() || !newton()) return false;
+  kept_ = solution.force;
   for (const Point& point : points_)
     for (int c = 0; c < point.components; ++c) {
       const std::size_t at = static_cast<std::size_t>(c);
       solution.force[point.first + c * point.stride] = point.root * (point.slides ? point.ray[at] * point.force[0] : point.force[at]);
     }
-  return true;
+  return is_good(problem, gap, solution);
 }
 
 }  // namespace uplift

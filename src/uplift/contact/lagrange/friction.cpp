@@ -7,7 +7,7 @@
 #include "uplift/contact/lagrange/status.h"
 #include "uplift/contact/newton/newton.h"
 
-// Semismooth Newton on the contact status of frictional points. For a status the step is linear (lagrange_status.h). Then each point looks
+// Semismooth Newton on the contact status of frictional points. For a status the step is linear (status.h). Then each point looks
 // at its trial:
 //   closed  opens when its pressure is tensile; an open one closes when it penetrates
 //   stick   slips when |p_t| > -mu p_n, in the direction of p_t
@@ -63,7 +63,7 @@ class Frictional final : public MethodWork {
 
   Outcome finish() {
     outcome_.converged = true;
-    share_.solve(*problem_, step_.gap(), *solution_);
+    if (share_.solve(*problem_, step_.gap(), *solution_)) outcome_.residual = share_.residual();
     return outcome_;
   }
 

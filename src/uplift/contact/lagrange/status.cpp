@@ -6,7 +6,7 @@
 #include "uplift/contact/point_rows.h"
 #include "uplift/math/small.h"
 
-// The statuses: first guesses, trials, and what is read off. The linear problem of one status is in lagrange_status_solve.cpp.
+// The statuses: first guesses, trials, and what is read off. The linear problem of one status is in status_solve.cpp.
 namespace uplift {
 namespace {
 

@@ -5,7 +5,7 @@
 #include "uplift/contact/point_rows.h"
 #include "uplift/math/small.h"
 
-// The linear problem of one status (lagrange_status.h).
+// The linear problem of one status (status.h).
 namespace uplift {
 namespace {
 
