@@ -7,13 +7,15 @@
 #include "uplift/math/dense.h"
 #include "uplift/math/lanes.h"
 
-// Right-looking elimination (G. H. Golub & C. F. Van Loan, Matrix Computations, section 3.2), panel by panel. The orders are about a
-// hundred: what libraries arrange for large matrices costs more than the arithmetic.
+// Right-looking elimination (G. H. Golub & C. F. Van Loan, Matrix Computations, section 3.2), panel by panel. Most orders are about a
+// hundred: what libraries arrange for large matrices costs more than the arithmetic. Panels alone would read a matrix that the caches do
+// not hold order / width times; beyond order `large` they stay within blocks of columns, and products of matrices do the rest.
 namespace uplift {
 namespace {
 
-constexpr Index width = 8;             // of a panel
-constexpr Index together = 2 * lanes;  // rows; columns are so long that whole groups of them fit
+constexpr Index width = 8;                // of a panel
+constexpr Index large = 512, wide = 128;  // order from which blocks pay, their columns (docs/performance.md); multiples of the width
+constexpr Index together = 2 * lanes;     // rows; columns are so long that whole groups of them fit
 
 /// Row of the largest entry of a column from row `first` on, of those before `end`.
 Index largest_entry(const double* column, Index first, Index end) {
@@ -98,26 +100,46 @@ void follow(const double* panel, const double* inverse, Index stride, Index firs
 }  // namespace
 
 void LuInPlace::size(Index most) {
-  matrix_.setZero((most + together + width - 1) / width * width, most);  // rows that are carried along, beyond those of the matrix
+  matrix_.resize((most + together + width - 1) / width * width, most);  // rows that are carried along, beyond those of the matrix
   swaps_.assign(static_cast<std::size_t>(most), 0);
+}
+
+/// Columns from `from` to `end`, all rows below: panels, which leave the columns on the right as they are.
+void LuInPlace::factorise_block(Index from, Index end) {
+  const Index n = order_, stride = matrix_.rows();
+  double* a = matrix_.data();
+  for (Index first = from; first < end; first += width) {
+    const Index columns = std::min(width, end - first);
+    eliminate(a, stride, first, columns, n, swaps_.data());
+    for (Index j = 0; j < first; ++j) exchange(a + j * stride, first, columns, swaps_.data());
+    Index j = first + columns;
+    if (j == end) break;  // else the panel is whole
+    const double* panel = a + first * stride;
+    double inverse[width * width];
+    invert_triangle(panel, stride, first, inverse);
+    for (; j + 4 <= end; j += 4) follow<4>(panel, inverse, stride, first, n, swaps_.data(), a + j * stride);
+    for (; j < end; ++j) follow<1>(panel, inverse, stride, first, n, swaps_.data(), a + j * stride);
+  }
+}
+
+/// Everything on the right of a block.
+void LuInPlace::follow_block(Index from, Index end) {
+  const Index columns = end - from, rest = order_ - end;
+  for (Index j = end; j < order_; ++j) exchange(column(j), from, columns, swaps_.data());
+  auto top = matrix_.block(from, end, columns, rest);
+  matrix_.block(from, from, columns, columns).triangularView<Eigen::UnitLower>().solveInPlace(top);
+  matrix_.block(end, end, rest, rest).noalias() -= matrix_.block(end, from, rest, columns) * top;
 }
 
 bool LuInPlace::factorise(Index n) {
   order_ = n;
   if (n == 0) return true;
-  const Index stride = matrix_.rows();
-  double* a = matrix_.data();
-  for (Index first = 0; first < n; first += width) {
-    const Index columns = std::min(width, n - first);
-    eliminate(a, stride, first, columns, n, swaps_.data());
-    for (Index j = 0; j < first; ++j) exchange(a + j * stride, first, columns, swaps_.data());
-    Index j = first + columns;
-    if (j == n) break;  // else the panel is whole
-    const double* panel = a + first * stride;
-    double inverse[width * width];
-    invert_triangle(panel, stride, first, inverse);
-    for (; j + 4 <= n; j += 4) follow<4>(panel, inverse, stride, first, n, swaps_.data(), a + j * stride);
-    for (; j < n; ++j) follow<1>(panel, inverse, stride, first, n, swaps_.data(), a + j * stride);
+  for (Index j = 0; j < n; ++j) std::fill_n(column(j) + n, together, 0.0);  // carried along: they would grow from one matrix to the next
+  const Index block = n > large ? wide : n;
+  for (Index from = 0; from < n; from += block) {
+    const Index end = std::min(from + block, n);
+    factorise_block(from, end);
+    if (end < n) follow_block(from, end);
   }
   const auto pivots = matrix_.diagonal().head(n).cwiseAbs();
   // whatever is not finite in the matrix reaches a pivot

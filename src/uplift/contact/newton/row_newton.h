@@ -81,7 +81,7 @@ class RowNewton final : public MethodWork {
   Vector origin_force_, origin_opening_, kept_;    // where a line search begins; the guess
   Vector opening_step_, force_step_, part_, sum_;  // dg, dP; k dg
   Vector from_, end_;                              // the last step
-  double aim_ = 0, size_ = 0;                      // sum of F_ii s_i^2, its root [sqrt(J)]; bounds |C^T s| as far as rows are apart
+  double aim_ = 0, size_ = 0;  // root of the sum of F_ii s_i^2 [sqrt(J)], an estimate of |C^T s|: wanted, now; is_solution() judges
 };
 
 /// By RowNewton where that suits the problem, from the work space of Newton's method.
