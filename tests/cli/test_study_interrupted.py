@@ -105,6 +105,37 @@ class Studies(Disturbed):
         self.assertEqual(self.evaluated(name), expected)
         self.assertEqual(len(self.ids(name)), len(set(self.ids(name))))
 
+    def test_a_killed_study_with_a_reduced_model_is_begun_again(self):
+        """Records of a reduced model are marched one after another: a process that is killed has lost the one that it was at."""
+        case = CASE.replace("duration = 1\n", "duration = 5\n")
+        self.write(case)
+        self.uplift("reduce", "case.toml", "--size", "3", "--quiet", "-o", "case.rom")
+        self.write('reduced_model = "case.rom"\n' + case)
+        plan = STRIPES.replace("[0.2, 0.5, 1.0]", "[0.2, 0.3, 0.4, 0.5]")
+        self.uplift("study", "run", self.study(plan, "whole.study"), "-q", "-j", "1")
+        expected, ids = self.evaluated("whole.study"), self.ids("whole.study")
+        name = self.study(plan)
+        for disturb in ("coordinator", "worker"):
+            with self.subTest(disturb=disturb):
+                process = self.start("study", "run", name, "-q", "-j", "1")
+                told = len(self.lines(name))
+                self.assertTrue(until(lambda: len(self.lines(name)) > told + 1, process))
+                before = set(self.lines(name))
+                if disturb == "coordinator":
+                    os.kill(process.pid, signal.SIGKILL)
+                else:  # the coordinator is stopped meanwhile: it would let another worker go on
+                    os.kill(process.pid, signal.SIGSTOP)
+                    for worker in children(process):
+                        os.kill(worker, signal.SIGKILL)
+                    process.send_signal(signal.SIGTERM)
+                    process.send_signal(signal.SIGCONT)
+                process.communicate(timeout=300)
+                self.assertTrue(before <= set(self.lines(name)))
+                self.assertLess(len(self.ids(name)), len(ids))  # it was killed in the middle
+        self.finish(name)
+        self.assertEqual(self.evaluated(name), expected)
+        self.assertEqual(sorted(self.ids(name)), sorted(ids))
+
     def finish(self, name):
         """Computes what is missing. Workers of a killed coordinator may hold its lock for a moment."""
         for _ in range(500):
