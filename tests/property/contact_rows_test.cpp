@@ -24,6 +24,17 @@ Matrix factor_of(std::mt19937& random) {
   return 1e-4 * Matrix(Cholesky(compliance)->matrixL());
 }
 
+/// A base at rest whose points have one law, of normal stiffness k [Pa/m].
+void set_base(Own& own, const Law& law, double k, const Matrix& factor, bool average) {
+  own.laws.push_back(law_of(law, k));
+  Block& block = own.add("base", points, components, std::vector<double>(points, 0.5));
+  block.law = own.laws.back().get();
+  own.problem.old.setZero(block.law->num_history(components) * points);
+  own.set(factor, Vector::Zero(rows));
+  own.change().average = average;
+  own.change().scale = average ? 2 : 1;
+}
+
 }  // namespace
 
 TEST(ContactRows, KeptFactorGivesOpeningsAndForcesOfNewFactors) {
@@ -34,15 +45,7 @@ TEST(ContactRows, KeptFactorGivesOpeningsAndForcesOfNewFactors) {
       std::uniform_real_distribution<double> uniform(-1, 1);
       Own anew, kept;
       const Matrix factor = factor_of(random);
-      for (Own* own : {&anew, &kept}) {
-        own->laws.push_back(law_of(law, std::pow(10.0, 6 + seed % 3)));
-        Block& block = own->add("base", points, components, std::vector<double>(points, 0.5));
-        block.law = own->laws.back().get();
-        own->problem.old.setZero(block.law->num_history(components) * points);
-        own->set(factor, Vector::Zero(rows));
-        own->change().average = seed % 2 == 0;
-        own->change().scale = seed % 2 == 0 ? 2 : 1;
-      }
+      for (Own* own : {&anew, &kept}) set_base(*own, law, std::pow(10.0, 6 + seed % 3), factor, seed % 2 == 0);
       anew.change().solver = InterfaceSolver::direct;
       const auto newton = method("newton");
       const auto anew_work = newton->make_work(), kept_work = newton->make_work();
@@ -81,14 +84,7 @@ TEST(ContactRows, FactorsHaveTheRowsThatChangeAlone) {
     std::mt19937 random(average ? 2 : 1);
     Own anew, kept;
     const Matrix factor = factor_of(random);
-    for (Own* own : {&anew, &kept}) {
-      own->laws.push_back(law_of({"springs", 0, "bonded"}, 1e7));
-      own->add("base", points, components, std::vector<double>(points, 0.5)).law = own->laws.back().get();
-      own->problem.old.setZero(own->laws.back()->num_history(components) * points);
-      own->set(factor, Vector::Zero(rows));
-      own->change().average = average;
-      own->change().scale = average ? 2 : 1;
-    }
+    for (Own* own : {&anew, &kept}) set_base(*own, {"springs", 0, "bonded"}, 1e7, factor, average);
     anew.change().solver = InterfaceSolver::direct;
     const auto newton = method("newton");
     const auto anew_work = newton->make_work(), kept_work = newton->make_work();
@@ -122,14 +118,7 @@ TEST(ContactRows, SlidingPointsChangeTheirTangentialForcesAlone) {
     std::mt19937 random(average ? 4 : 3);
     Own anew, kept;
     const Matrix factor = factor_of(random);
-    for (Own* own : {&anew, &kept}) {
-      own->laws.push_back(law_of({"springs", 0.4}, 1e7));
-      own->add("base", points, components, std::vector<double>(points, 0.5)).law = own->laws.back().get();
-      own->problem.old.setZero(own->laws.back()->num_history(components) * points);
-      own->set(factor, Vector::Zero(rows));
-      own->change().average = average;
-      own->change().scale = average ? 2 : 1;
-    }
+    for (Own* own : {&anew, &kept}) set_base(*own, {"springs", 0.4}, 1e7, factor, average);
     anew.change().solver = InterfaceSolver::direct;
     const auto newton = method("newton");
     const auto anew_work = newton->make_work(), kept_work = newton->make_work();

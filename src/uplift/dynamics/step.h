@@ -36,10 +36,9 @@ struct StepCounts {
 
 /// What the step after an impact begins with beside the state, for the damping force that acted at once (docs/theory, section 5).
 struct Kick {
-  double step = 0;         // s: of the step of the impact; 0: there was none
-  Vector acceleration;     // free unknowns
-  Vector force;            // rows [N]
-  Vector lag, lag_change;  // free unknowns [N]: what M times the acceleration of the state has more than the forces, and what the kick adds
+  double step = 0;      // s: of the step of the impact; 0: there was none
+  Vector acceleration;  // free unknowns
+  Vector force;         // interface rows [N]
 };
 
 /// What a stage hands on to the next one beside its state.
@@ -149,8 +148,6 @@ class Stepper {
   bool gap_closes() const;
   void soften(const Level& level, Vector& acceleration);
   void balance_damping(const Level& level, Impact& data, bool with_friction);
-  void balance_pressure(const Impact& data, Vector& acceleration);
-  void balance_friction(const Level& level, const Impact& data, Vector& acceleration);
   void damp_impact(const Level& level, const Vector& velocity, Vector& acceleration);
   void begin_kick(const Level& level);
   void undo_kick();
@@ -160,7 +157,9 @@ class Stepper {
   void restore_dropped();
   bool impact_of_friction(const Level& level, const Impact& data);
   void separate_impulse(const Impact& data);
-  void separate_impulse_of_friction(const Block& block, const Impact& data);
+  void read_forces(const Impact& data, bool with_friction);
+  void take_forces();
+  bool obey_friction(const Spread& spread, CoulombRates& law, const Impact& data, const Vector& velocity, Vector& acceleration);
   void hold_initial_acceleration();
   void release_parting();
   bool select_closed(const std::vector<Block>& blocks);
@@ -214,7 +213,8 @@ class Stepper {
   BulkWork impact_work_{linear_};
   Vector velocity_free_;                   // before an impact
   Kick kick_, kick_next_;                  // of impacts at the beginning and at the end of the step
-  Kick unkicked_;                          // acceleration and force of now_ without it, and the lag with it
+  Kick unkicked_;                          // acceleration and force of now_ without it
+  Vector lag_;                             // free unknowns [N]: M a of the beginning with it, less the forces
   std::unique_ptr<CoulombRates> coulomb_;  // null without friction, and with other rules than project_hold
   FrictionOfImpacts friction_;
   double friction_step_ = 0;  // J: work of the friction of constraints in the step

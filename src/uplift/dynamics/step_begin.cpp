@@ -139,13 +139,13 @@ void Stepper::hold_initial_acceleration() {
 void Stepper::make_room() {
   const Eigen::Index n = bulk_.unknowns;
   for (Vector* v : {&force_now_, &force_next_, &stiff_now_, &stiff_next_, &momentum_now_, &momentum_next_, &right_, &increment_, &work_,
-                    &work2_, &damped_})
+                    &work2_, &damped_, &lag_})
     v->setZero(n);
   contact_.setZero(b_.rows());
   impulse_.setZero(b_.rows());
   if (impacts_)
     for (Kick* kick : {&kick_, &kick_next_, &unkicked_}) {
-      for (Vector* v : {&kick->acceleration, &kick->lag, &kick->lag_change}) v->setZero(n);
+      kick->acceleration.setZero(n);
       kick->force.setZero(b_.rows());
     }
 }

@@ -35,7 +35,7 @@ void Stepper::book_energies(const Level& level) {
     bulk_.damping.multiply(work_, damped_);
     energies_.damping += small::dot(n, damped_.data(), du);
   }
-  if (kick_.step > 0) impact_loss_ -= 0.5 * small::dot(n, unkicked_.lag.data(), du);
+  if (kick_.step > 0) impact_loss_ -= 0.5 * small::dot(n, lag_.data(), du);
   energies_.kinetic = 0.5 * kinetic;
   energies_.strain = 0.5 * strain;
   if (newton_ != nullptr) {

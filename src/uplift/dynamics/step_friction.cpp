@@ -133,9 +133,7 @@ bool Stepper::apply_rule(const Level& level, Impact& data) {
 bool Stepper::impact_of_friction(const Level& level, const Impact& data) {
   const std::vector<Block>& blocks = last_->model->blocks;
   FrictionOfImpacts& now = friction_;
-  now.dropped.setZero(contact_.size());
-  for (const Block& block : blocks)
-    if (block.cone != nullptr) now.dropped.segment(block.first, block.rows()) = contact_.segment(block.first, block.rows());
+  take_forces();
   const Spread& spread = level.impact != nullptr ? *level.impact : *mass_spread_;
   CoulombRates& impulses = level.impact != nullptr ? *level.coulomb : *coulomb_;
   now.push.noalias() = spread.factor.transpose() * now.dropped;
@@ -153,53 +151,48 @@ bool Stepper::impact_of_friction(const Level& level, const Impact& data) {
   spread.add(1, impulses.z(), now.velocity);
   now.impulse = impulses.impulse();
 
-  // the force after the impact: what Coulomb's law asks for in half a step from now on
-  const double time = data.velocity_weight / data.acceleration_weight, at_rest = 1e-9 * now.rates.cwiseAbs().maxCoeff();
+  // the force after the impact
+  const double at_rest = 1e-9 * now.rates.cwiseAbs().maxCoeff();
   for (Index row = 0; row < now.takes_part.size(); ++row)
     if (impulses.rate()[row] > at_rest) now.takes_part[row] = 0;
   const bool soft = closing_ && level.impact != nullptr;
-  const Spread& held = soft ? *level.impact : *mass_spread_;
-  CoulombRates& forces = soft ? *level.coulomb : *coulomb_;
   now.after = next_.acceleration;
   damp_impact(level, now.velocity, now.after);
   if (soft) soften(level, now.after);
-  now.push.noalias() = held.factor.transpose() * now.dropped;
-  held.add(data.acceleration_weight, now.push, now.after);
-  now.soon = now.velocity + time * now.after;
-  row_rates(data, now.soon, 0, contact_.size(), now.rates);
-  if (!forces.solve(now.rates, now.takes_part, still * closed_gap_ / level.step)) return false;
-  held.add(1 / time, forces.z(), now.after);
+  if (!obey_friction(soft ? *level.impact : *mass_spread_, soft ? *level.coulomb : *coulomb_, data, now.velocity, now.after)) return false;
   next_.velocity = now.velocity, next_.acceleration = now.after;
+  if (!closing_) return true;
   for (const Block& block : blocks) {
     if (block.cone == nullptr) continue;
-    contact_.segment(block.first, block.rows()) = forces.impulse().segment(block.first, block.rows()) / data.velocity_weight;
-    if (!closing_) continue;
     const int normal = block.first + block.batch.normal(), n = block.batch.points;
     impact_impulse_.segment(normal, n) = now.impulse.segment(normal, n) - data.velocity_weight * contact_.segment(normal, n);
   }
   return true;
 }
 
-/// The acceleration contains the present forces, and receives those that belong to it by Coulomb's law, as in impact_of_friction().
-void Stepper::balance_friction(const Level& level, const Impact& data, Vector& acceleration) {
+/// Forces by Coulomb's law: those for what half a step from now on would bring, in place of the present ones, which the acceleration
+/// contains. False where none are found: the forces stay, and the acceleration is of no use.
+bool Stepper::obey_friction(const Spread& spread, CoulombRates& law, const Impact& data, const Vector& velocity, Vector& acceleration) {
   FrictionOfImpacts& now = friction_;
   const double time = data.velocity_weight / data.acceleration_weight;
-  now.dropped.setZero(contact_.size());
-  for (const Block& block : last_->model->blocks)
-    if (block.cone != nullptr) now.dropped.segment(block.first, block.rows()) = contact_.segment(block.first, block.rows());
-  now.push.noalias() = level.impact->factor.transpose() * now.dropped;
-  now.soon = next_.velocity + time * acceleration;
-  level.impact->add(data.velocity_weight, now.push, now.soon);
+  take_forces();
+  now.push.noalias() = spread.factor.transpose() * now.dropped;
+  spread.add(data.acceleration_weight, now.push, acceleration);
+  now.soon = velocity + time * acceleration;
   row_rates(data, now.soon, 0, contact_.size(), now.rates);
-  if (!level.coulomb->solve(now.rates, now.takes_part, still * closed_gap_ / data.step)) {
-    acceleration = kick_next_.acceleration;
-    return;
-  }
-  level.impact->add(1, level.coulomb->z(), now.soon);
-  acceleration = (now.soon - next_.velocity) / time;
+  if (!law.solve(now.rates, now.takes_part, still * closed_gap_ / data.step)) return false;
+  spread.add(1 / time, law.z(), acceleration);
   for (const Block& block : last_->model->blocks)
     if (block.cone != nullptr)
-      contact_.segment(block.first, block.rows()) = level.coulomb->impulse().segment(block.first, block.rows()) / data.velocity_weight;
+      contact_.segment(block.first, block.rows()) = law.impulse().segment(block.first, block.rows()) / data.velocity_weight;
+  return true;
+}
+
+/// The present forces of cones, those of laws zero, as the forces that are to be taken out.
+void Stepper::take_forces() {
+  friction_.dropped.setZero(contact_.size());
+  for (const Block& block : last_->model->blocks)
+    if (block.cone != nullptr) friction_.dropped.segment(block.first, block.rows()) = contact_.segment(block.first, block.rows());
 }
 
 }  // namespace uplift

@@ -116,30 +116,31 @@ void Stepper::separate_impulse(const Impact& data) {
   constexpr double round_off = 1e-9;
   const ImpactScratch& scratch = impact_scratch_;
   if (!closing_ && !(scratch.push.squaredNorm() > round_off * round_off * scratch.y.squaredNorm())) return;
+  read_forces(data, closing_);
+  if (!closing_) return;
   for (const Block& block : last_->model->blocks) {
     if (block.cone == nullptr) continue;  // the force of a law follows from its opening
-    const int n = block.batch.points, normal = block.first + block.batch.normal();
-    if (block.cone->friction() > 0) {
-      if (closing_) separate_impulse_of_friction(block, data);
-      continue;
-    }
-    for (int i = 0; i < n; ++i) {
-      if (!(pressed_[normal + i] > 0)) continue;
-      const double smooth = scratch.impulse[normal + i] / data.acceleration_weight;
-      if (closing_) impact_impulse_[normal + i] = scratch.total[normal + i] - data.velocity_weight * smooth;
-      contact_[normal + i] = smooth;
-    }
+    const int normal = block.first + block.batch.normal();
+    for (int row = normal; row < normal + block.batch.points; ++row)
+      if (pressed_[row] > 0) impact_impulse_[row] = scratch.total[row] - data.velocity_weight * contact_[row];
   }
 }
 
-/// How friction distributes a force over redundant points is not unique, its sum is: all forces keep their ratios.
-void Stepper::separate_impulse_of_friction(const Block& block, const Impact& data) {
-  const int n = block.batch.points, normal = block.first + block.batch.normal();
-  const double pressure = contact_.segment(normal, n).sum(),
-               smooth = impact_scratch_.impulse.segment(normal, n).sum() / data.acceleration_weight;
-  const double share = pressure < 0 ? smooth / pressure : 1;
-  for (int i = block.first; i < block.first + block.rows(); ++i) contact_[i] *= share;
-  for (int i = normal; i < normal + n; ++i) impact_impulse_[i] = impact_scratch_.total[i] - data.velocity_weight * contact_[i];
+/// The contact forces that belong to the acceleration that was projected last. How friction distributes a force over redundant points is
+/// not unique, its sum is: all forces keep their ratios.
+void Stepper::read_forces(const Impact& data, bool with_friction) {
+  for (const Block& block : last_->model->blocks) {
+    if (block.cone == nullptr) continue;
+    const int n = block.batch.points, normal = block.first + block.batch.normal();
+    const auto smooth = impact_scratch_.impulse.segment(normal, n) / data.acceleration_weight;
+    if (block.cone->friction() > 0) {
+      const double pressure = contact_.segment(normal, n).sum();
+      if (with_friction && pressure < 0) contact_.segment(block.first, block.rows()) *= smooth.sum() / pressure;
+      continue;
+    }
+    for (int i = 0; i < n; ++i)
+      if (pressed_[normal + i] > 0) contact_[normal + i] = smooth[i];
+  }
 }
 
 /// Whether a row that is pressed at the end of the step was open at its beginning.
@@ -169,23 +170,20 @@ void Stepper::balance_damping(const Level& level, Impact& data, bool with_fricti
   kick.step = level.step;
   kick.acceleration = next_.acceleration;
   kick.force = contact_;
-  bulk_.damping.multiply(product_, kick.lag_change);
-  level.impact_factor->solve(kick.lag_change, work2_, impact_work_);
+  bulk_.damping.multiply(product_, work_);
+  level.impact_factor->solve(work_, work2_, impact_work_);
   next_.acceleration -= work2_;
   data.mass = level.impact.get();
-  if (with_friction)
-    balance_friction(level, data, next_.acceleration);
-  else
-    balance_pressure(data, next_.acceleration);
+  if (with_friction) {
+    if (!obey_friction(*level.impact, *level.coulomb, data, next_.velocity, next_.acceleration)) next_.acceleration = kick.acceleration;
+  } else {
+    impact_scratch_.taken = impact_scratch_.impulse / data.acceleration_weight;
+    project_rate(data, next_.acceleration, data.acceleration_weight, Select::all, impact_scratch_);
+    correct(data, 1, next_.acceleration, impact_scratch_);
+    read_forces(data, true);
+  }
   kick.acceleration -= next_.acceleration;
   kick.force -= contact_;
-  product_ = data.velocity_weight * kick.acceleration;
-  bulk_.damping.multiply(product_, kick.lag);
-  kick.lag_change -= kick.lag;
-  if (closing_) {
-    product_ = -data.velocity_weight * next_.acceleration;
-    bulk_.damping.multiply(product_, kick.lag);
-  }
   for (const Block& block : last_->model->blocks) {
     if (block.cone == nullptr) continue;
     for (int row = block.first + block.batch.normal(), i = 0; i < block.batch.points; ++i, ++row)
@@ -193,7 +191,8 @@ void Stepper::balance_damping(const Level& level, Impact& data, bool with_fricti
   }
 }
 
-/// The step after an impact takes back what damping did at once, as far as it is as long as the step of the impact.
+/// The step after an impact takes back what damping did at once, as far as it is as long as the step of the impact. What its beginning then
+/// lacks in equilibrium does work, which belongs to the impact.
 void Stepper::begin_kick(const Level& level) {
   if (!(kick_.step > 0)) return;
   const double share = std::min(1.0, kick_.step / level.step);
@@ -201,33 +200,15 @@ void Stepper::begin_kick(const Level& level) {
   unkicked_.force = now_.force;
   now_.acceleration += share * kick_.acceleration;
   now_.force += share * kick_.force;
-  unkicked_.lag = kick_.lag + share * kick_.lag_change;
+  bulk_.mass.multiply(now_.acceleration, lag_);
+  forces_at(now_, work_);
+  lag_ -= work_;
 }
 
 void Stepper::undo_kick() {
   if (!(kick_.step > 0)) return;
   now_.acceleration = unkicked_.acceleration;
   now_.force = unkicked_.force;
-}
-
-/// The acceleration contains the forces of the scratch, and receives those that it needs.
-void Stepper::balance_pressure(const Impact& data, Vector& acceleration) {
-  ImpactScratch& scratch = impact_scratch_;
-  scratch.taken = scratch.impulse / data.acceleration_weight;
-  project_rate(data, acceleration, data.acceleration_weight, Select::all, scratch);
-  correct(data, 1, acceleration, scratch);
-  for (const Block& block : last_->model->blocks) {
-    if (block.cone == nullptr) continue;
-    const int n = block.batch.points, normal = block.first + block.batch.normal();
-    const auto smooth = scratch.impulse.segment(normal, n) / data.acceleration_weight;
-    if (block.cone->friction() > 0) {
-      const double pressure = contact_.segment(normal, n).sum();
-      contact_.segment(block.first, block.rows()) *= pressure < 0 ? smooth.sum() / pressure : 1;
-      continue;
-    }
-    for (int i = 0; i < n; ++i)
-      if (pressed_[normal + i] > 0) contact_[normal + i] = smooth[i];
-  }
 }
 
 /// With other schemes than the trapezoidal rule: what damping D does to the acceleration when an impact has changed the velocity,

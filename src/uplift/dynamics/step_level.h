@@ -17,11 +17,10 @@ struct Stepper::Level {
   double mass_velocity = 0, mass_acceleration = 0, damping_velocity = 0, damping_acceleration = 0;
   std::unique_ptr<StepSolver> solver;
   std::shared_ptr<const BulkFactor> tangent;  // the last one of yielding solids, whose analysis serves the next one
-  std::unique_ptr<BulkFactor>
-      impact_factor;                // of the matrix by which impulses spread where it is not M; of K_eff, where damp_impact() finds none
-  std::unique_ptr<Spread> dynamic;  // of K + 4M/dt^2, for `propagate`
-  std::unique_ptr<Spread> impact;   // of M + w D, for `project_hold` with damping D and the trapezoidal rule
-  std::unique_ptr<CoulombRates> coulomb;  // by which impulses with friction spread there
+  std::unique_ptr<BulkFactor> impact_factor;  // of the matrix behind one of the following; of K_eff, where damp_impact() has no other
+  std::unique_ptr<Spread> dynamic;            // of K + 4M/dt^2, for `propagate`
+  std::unique_ptr<Spread> impact;             // of M + w D, for `project_hold` with damping D and the trapezoidal rule
+  std::unique_ptr<CoulombRates> coulomb;      // by which impulses with friction spread there
   // with all forces of the beginning, while a solution without some of them is sought (step_friction.cpp)
   Vector increment;
   PlasticState plastic;

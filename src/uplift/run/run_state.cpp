@@ -71,7 +71,7 @@ void list_parts(Archive& archive, T& e) {
 
 template <class Archive, SameAs<Kick> T>
 void list_parts(Archive& archive, T& kick) {
-  archive(kick.step, kick.acceleration, kick.force, kick.lag, kick.lag_change);
+  archive(kick.step, kick.acceleration, kick.force);
 }
 
 template <class Archive, SameAs<Ledger> T>

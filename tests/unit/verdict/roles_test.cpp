@@ -1,7 +1,7 @@
 // Bases and walls of embedded foundations: forces by hand, division by normals, what is asked of a wall.
 #include <cmath>
 
-#include "unit/verdict/verdict_support.h"
+#include "unit/verdict/strip_support.h"
 #include "uplift/verdict/foundation.h"
 #include "uplift/verdict/verdict.h"
 
@@ -306,28 +306,7 @@ TEST(VerdictNoise, AChangeNeedsSomethingThatChanges) {
 
 /// Vertical motion alone: a shear of round-off is neither compared nor a safety against sliding.
 TEST(VerdictNoise, AShearOfRoundOffIsNotCompared) {
-  const BuiltCase built = built_of(R"(title = "strip"
-[nodes]
-base = [0, 0]
-[[rigid]]
-name = "footing"
-node = "base"
-mass = 1e4
-inertia = 7500
-[[interface]]
-name = "soil"
-footing = { body = "base", width = 3, points = 5 }
-law = { type = "springs", K_n = 2e8, K_t = 1e8, tangential = "coulomb", friction = 0.6 }
-[[load]]
-node = "base"
-force = [0, -1e6]
-[[stage]]
-type = "static"
-[[stage]]
-type = "dynamic"
-duration = 0.1
-step = 0.01
-)");
+  const BuiltCase built = built_of(winkler_strip::strip("", "5", ""));
   const auto moved = [](double shear) {
     return run_of({view_of({.axial = -1e6}), view_of({.axial = -1.3e6, .shear = shear, .moment = shear})}, 0.1);
   };

@@ -10,7 +10,9 @@ namespace uplift::winkler_strip {
 
 inline constexpr double width = 3, modulus = 2e8, dead_load = 1e6, theta_u = dead_load / (modulus * width * width / 2);  // W/(2 k b^2)
 
-inline std::string strip(const std::string& more = "") {
+/// W b = 1.5 MN m.
+inline std::string strip(const std::string& more = "", const std::string& points = "4001",
+                         const std::string& cohesion = ", cohesion = \"20 kPa\"") {
   return R"(title = "strip"
 [nodes]
 base = [0, 0]
@@ -21,8 +23,10 @@ mass = 1e4
 inertia = 7500
 [[interface]]
 name = "soil"
-footing = { body = "base", width = 3, points = 4001 }
-law = { type = "springs", K_n = 2e8, K_t = 1e8, tangential = "coulomb", friction = 0.6, cohesion = "20 kPa" }
+footing = { body = "base", width = 3, points = )" +
+         points + R"( }
+law = { type = "springs", K_n = 2e8, K_t = 1e8, tangential = "coulomb", friction = 0.6)" +
+         cohesion + R"( }
 [[load]]
 node = "base"
 force = [0, -1e6]

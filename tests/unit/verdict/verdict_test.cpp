@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "unit/verdict/verdict_support.h"
+#include "unit/verdict/strip_support.h"
 #include "uplift/base/format.h"
 #include "uplift/model/builder.h"
 #include "uplift/verdict/compare.h"
@@ -88,30 +88,8 @@ TEST(VerdictTest, SaysWhetherItUplifts) {
   EXPECT_EQ(uplifts.headline, "The base uplifts: up to 60 % of its area, by up to 13.0 mm");
 }
 
-/// A strip of 3 m under 1 MN; W b = 1.5 MN m.
 BuiltCase strip() {
-  return support::built_of(R"(title = "strip"
-[nodes]
-base = [0, 0]
-[[rigid]]
-name = "footing"
-node = "base"
-mass = 1e4
-inertia = 7500
-[[interface]]
-name = "soil"
-footing = { body = "base", width = 3, points = 5 }
-law = { type = "springs", K_n = 2e8, K_t = 1e8, tangential = "coulomb", friction = 0.6 }
-[[load]]
-node = "base"
-force = [0, -1e6]
-[[stage]]
-type = "static"
-[[stage]]
-type = "dynamic"
-duration = 0.1
-step = 0.01
-)");
+  return support::built_of(winkler_strip::strip("", "5", ""));
 }
 
 TEST(VerdictTest, SaysTheSafeties) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "uplift/contact/point_rows.h"
+#include "uplift/math/dense.h"
 #include "uplift/math/line_search.h"
 #include "uplift/math/small.h"
 
@@ -190,21 +191,14 @@ void ForceShare::fill_hessian(double share) {
   }
 }
 
-/// Newton's: by H = U^T U in place, Cholesky column by column (Eigen's class allocates where the order changes).
+/// Newton's. The factor takes the place of the Hessian.
 bool ForceShare::find_step() {
+  auto hessian = hessian_.topLeftCorner(rank_, rank_);
+  const Eigen::LLT<Eigen::Ref<Matrix>> factor(hessian);
+  if (factor.info() != Success) return false;
   step_ = -gradient_;
-  for (Index j = 0; j < rank_; ++j) {
-    double* column = hessian_.col(j).data();
-    for (Index i = 0; i < j; ++i) column[i] = (column[i] - small::dot(i, hessian_.col(i).data(), column)) / hessian_(i, i);
-    const double rest = column[j] - small::sum_of_squares(j, column);
-    if (!(rest > 0)) return false;
-    column[j] = std::sqrt(rest);
-    step_[j] = (step_[j] - small::dot(j, column, step_.data())) / column[j];
-  }
-  for (Index j = rank_; j-- > 0;) {
-    step_[j] /= hessian_(j, j);
-    small::add(j, -step_[j], hessian_.col(j).data(), step_.data());
-  }
+  auto step = step_.head(rank_);
+  factor.solveInPlace(step);
   return true;
 }
 
