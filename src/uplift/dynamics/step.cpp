@@ -284,7 +284,7 @@ bool Stepper::balance_step(Level& level) {
     counts_.iterations += outcome.iterations;
     counts_.cycles += outcome.cycles;
     if (outcome.converged) {
-      if (coulomb_ == nullptr || !drop_creating()) return true;
+      if (!impacts_ || !drop_creating()) return true;
       if (reductions == 0) level.increment = increment_, level.plastic = plastic_next_, level.solution = *solution_;
       if (reductions < most_reductions) continue;
     }

@@ -141,7 +141,7 @@ class Stepper {
   void prepare_impacts();
   bool select_pressed(const std::vector<Block>& blocks, const Vector& forces);
   Impact impact_data(const Vector& force) const;
-  double contact_work() const;
+  double contact_work(const Vector& end_force, const Vector& end_opening) const;
   void apply_impact(Level& level);
   bool strikes(const Impact& data);
   bool apply_rule(const Level& level, Impact& data);

@@ -11,6 +11,7 @@ namespace uplift {
 namespace {
 
 constexpr double still = no_gap / closed_share;  // of closed_gap_: as far as contact is solved
+constexpr double owed = 1e-9;                    // of the external work: less is no energy that contact has given
 
 /// Whether a point with friction that bears no pressure before or after a step is `wanted`(row of its opening, at the end).
 template <class Wanted>
@@ -47,19 +48,22 @@ void Stepper::prepare_friction(const std::vector<Block>& blocks) {
 }
 
 /// The trapezoidal rule gives a point the work (p_0 + p_1) dg/2. With p_0 = 0 it takes energy only; where it is negative p_0 works on a
-/// motion that it does not resist. Where some point is open, such forces are taken out of the beginning of the step, which is solved again:
-/// all of it at a point that has opened, as much of its friction as is too much at one that has turned round. True when there are any.
+/// motion that it does not resist. Such forces are taken out of the beginning of the step, which is solved again: all of it at a point that
+/// has opened, as much of its friction as is too much at one that has turned round. With friction wherever some point is open; without
+/// where the contact would otherwise give back more than it has ever taken. True when there are any.
 bool Stepper::drop_creating() {
-  if (!options_.scheme.average_acceleration()) return false;
+  if (!options_.scheme.average_acceleration() || !impact_.holds_acceleration()) return false;
   const InterfaceSolution& end = *solution_;
-  if (!friction_.reduced &&
-      !(moves(now_.opening, end.opening, closed_gap_) && lifted(last_->model->blocks, now_, end.force, end.opening, closed_gap_)))
-    return false;
+  const std::vector<Block>& blocks = last_->model->blocks;
+  const bool opens = coulomb_ != nullptr && (friction_.reduced || (moves(now_.opening, end.opening, closed_gap_) &&
+                                                                   lifted(blocks, now_, end.force, end.opening, closed_gap_)));
+  const bool owes = impact_loss_ + contact_work(end.force, end.opening) < -owed * largest_external_;
+  if (!opens && !owes) return false;
   const double nothing = 1e-15 * largest_external_;
   Vector& dropped = friction_.dropped;
   bool any = false;
-  for (const Block& block : last_->model->blocks) {
-    if (block.cone == nullptr || !(block.cone->friction() > 0)) continue;
+  for (const Block& block : blocks) {
+    if (block.cone == nullptr || !(block.cone->friction() > 0 ? opens : owes)) continue;
     const int n = block.batch.points, normal = block.batch.normal();
     for (int i = block.first; i < block.first + n; ++i) {
       const bool held = end.force[i + normal] < 0;

@@ -71,13 +71,13 @@ Impact Stepper::impact_data(const Vector& force) const {
 /// Work that the pressures of constraints take from the motion in the step, 1/2 (p_0 + p_1) dg. It is zero where a point stays closed;
 /// where a gap closes it is the part of the impact's loss that the projection of the velocity does not see, where one opens a little is
 /// given back. The sum with the projection does not depend on the step (docs/theory, section 5).
-double Stepper::contact_work() const {
+double Stepper::contact_work(const Vector& end_force, const Vector& end_opening) const {
   double work = 0;
   for (const Block& block : last_->model->blocks) {
     if (block.cone == nullptr) continue;
     const int normal = block.first + block.batch.normal();
-    const double *force = now_.force.data() + normal, *next_force = contact_.data() + normal, *opening = now_.opening.data() + normal,
-                 *next_opening = next_.opening.data() + normal;
+    const double *force = now_.force.data() + normal, *next_force = end_force.data() + normal, *opening = now_.opening.data() + normal,
+                 *next_opening = end_opening.data() + normal;
 #pragma omp simd reduction(+ : work)
     for (int i = 0; i < block.batch.points; ++i) work += (force[i] + next_force[i]) * (next_opening[i] - opening[i]);
   }
@@ -90,7 +90,7 @@ void Stepper::apply_impact(Level& level) {
   impact_impulse_.setZero();
   impulse_.setZero();
   kick_next_.step = 0;
-  impact_loss_ += contact_work();
+  impact_loss_ += contact_work(contact_, next_.opening);
   if (!select_pressed(last_->model->blocks, contact_)) return;
   Impact data = impact_data(contact_);
   data.dynamic = level.dynamic.get();
