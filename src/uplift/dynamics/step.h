@@ -153,6 +153,9 @@ class Stepper {
   void undo_kick();
   void set_kick(const Ledger& from);
   void prepare_friction(const std::vector<Block>& blocks);
+  struct PointWork;
+  PointWork point_work(const Block& block, int first, const InterfaceSolution& end) const;
+  double friction_given(const std::vector<Block>& blocks, const InterfaceSolution& end) const;
   bool drop_creating();
   void restore_dropped();
   bool impact_of_friction(const Level& level, const Impact& data);

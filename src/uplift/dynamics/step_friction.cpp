@@ -47,39 +47,63 @@ void Stepper::prepare_friction(const std::vector<Block>& blocks) {
   friction_.push.setZero(mass_spread_->factor.cols());
 }
 
-/// The trapezoidal rule gives a point the work (p_0 + p_1) dg/2. With p_0 = 0 it takes energy only; where it is negative p_0 works on a
-/// motion that it does not resist. Such forces are taken out of the beginning of the step, which is solved again: all of it at a point that
-/// has opened, as much of its friction as is too much at one that has turned round. With friction wherever some point is open; without
-/// where the contact would otherwise give back more than it has ever taken. True when there are any.
+/// Work of the forces of a point's beginning and end in the step by the trapezoidal rule, (p_0 + p_1) dg/2.
+struct Stepper::PointWork {
+  bool held;  // pressed at the end: its friction alone counts
+  int rows;   // of its components, that count
+  double begun = 0, ended = 0;
+  double sum() const { return begun + ended; }
+};
+
+Stepper::PointWork Stepper::point_work(const Block& block, int first, const InterfaceSolution& end) const {
+  const int n = block.batch.points;
+  PointWork work{end.force[first + block.batch.normal()] < 0, block.batch.components};
+  if (work.held) --work.rows;
+  for (int c = 0, row = first; c < work.rows; ++c, row += n) {
+    const double change = end.opening[row] - now_.opening[row];
+    const double moved = std::abs(change) > still * closed_gap_ ? change : 0;  // a point that stays does no work by its round-off
+    work.begun += 0.5 * now_.force[row] * moved, work.ended += 0.5 * end.force[row] * moved;
+  }
+  return work;
+}
+
+/// Energy that friction would give back in the step where points turn round [J].
+double Stepper::friction_given(const std::vector<Block>& blocks, const InterfaceSolution& end) const {
+  double given = 0;
+  for (const Block& block : blocks)
+    if (block.cone != nullptr && block.cone->friction() > 0)
+      for (int i = block.first; i < block.first + block.batch.points; ++i) given -= std::min(0.0, point_work(block, i, end).sum());
+  return given;
+}
+
+/// With p_0 = 0 a point takes energy only; where its work is negative p_0 works on a motion that it does not resist. Such forces are taken
+/// out of the beginning of the step, which is solved again: all of it at a point that has opened, as much of its friction as is too much at
+/// one that has turned round. With friction wherever some point is open or the balance would show energy that friction has given; without
+/// where the contact would give back more than it has ever taken. True when there are any.
 bool Stepper::drop_creating() {
   if (!options_.scheme.average_acceleration() || !impact_.holds_acceleration()) return false;
   const InterfaceSolution& end = *solution_;
   const std::vector<Block>& blocks = last_->model->blocks;
-  const bool opens = coulomb_ != nullptr && (friction_.reduced || (moves(now_.opening, end.opening, closed_gap_) &&
-                                                                   lifted(blocks, now_, end.force, end.opening, closed_gap_)));
-  const bool owes = impact_loss_ + contact_work(end.force, end.opening) < -owed * largest_external_;
-  if (!opens && !owes) return false;
+  const double round_off = owed * largest_external_;
+  const bool slips = coulomb_ != nullptr && (friction_.reduced || (moves(now_.opening, end.opening, closed_gap_) &&
+                                                                   (lifted(blocks, now_, end.force, end.opening, closed_gap_) ||
+                                                                    energies_.residual + friction_given(blocks, end) > round_off)));
+  const bool owes = impact_loss_ + contact_work(end.force, end.opening) < -round_off;
+  if (!slips && !owes) return false;
   const double nothing = 1e-15 * largest_external_;
   Vector& dropped = friction_.dropped;
   bool any = false;
   for (const Block& block : blocks) {
-    if (block.cone == nullptr || !(block.cone->friction() > 0 ? opens : owes)) continue;
-    const int n = block.batch.points, normal = block.batch.normal();
+    if (block.cone == nullptr || !(block.cone->friction() > 0 ? slips : owes)) continue;
+    const int n = block.batch.points;
     for (int i = block.first; i < block.first + n; ++i) {
-      const bool held = end.force[i + normal] < 0;
-      double begun = 0, ended = 0;
-      const int rows = held ? block.batch.components - 1 : block.batch.components;
-      for (int c = 0, row = i; c < rows; ++c, row += n) {
-        const double change = end.opening[row] - now_.opening[row];
-        const double moved = std::abs(change) > still * closed_gap_ ? change : 0;  // a point that stays does no work by its round-off
-        begun += 0.5 * now_.force[row] * moved, ended += 0.5 * end.force[row] * moved;
-      }
-      if (begun + ended >= -nothing || !(begun < 0)) continue;
+      const PointWork work = point_work(block, i, end);
+      if (work.sum() >= -nothing || !(work.begun < 0)) continue;
       if (!any) dropped.setZero(now_.force.size());
       any = true;
       const bool again = friction_.reduced && now_.force[i] != friction_.force[i];
-      const double kept = held ? std::max(0.0, -ended / begun) * (again ? 0.5 : 1) : 0;
-      for (int c = 0, row = i; c < rows; ++c, row += n) dropped[row] = (1 - kept) * now_.force[row];
+      const double kept = work.held ? std::max(0.0, -work.ended / work.begun) * (again ? 0.5 : 1) : 0;
+      for (int c = 0, row = i; c < work.rows; ++c, row += n) dropped[row] = (1 - kept) * now_.force[row];
     }
   }
   if (!any) return false;

@@ -90,6 +90,7 @@ void Stepper::apply_impact(Level& level) {
   impact_impulse_.setZero();
   impulse_.setZero();
   kick_next_.step = 0;
+  const double loss_before = impact_loss_;
   impact_loss_ += contact_work(contact_, next_.opening);
   if (!select_pressed(last_->model->blocks, contact_)) return;
   Impact data = impact_data(contact_);
@@ -105,6 +106,10 @@ void Stepper::apply_impact(Level& level) {
   std::swap(data.tangents, tangents_);
   bulk_.mass.multiply(next_.velocity, momentum_next_);
   impact_loss_ += before - 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
+  if (with_friction) {  // friction of the multiplier that the impulse has given back is no work of friction
+    const double back = std::clamp(loss_before - impact_loss_, 0.0, friction_step_);
+    friction_step_ -= back, impact_loss_ += back;
+  }
   if (impact_.holds_acceleration() && !with_friction) separate_impulse(data);
   if (level.impact != nullptr) balance_damping(level, data, with_friction);
 }
