@@ -339,7 +339,13 @@ bool Stepper::try_step(Level& level) {
     small::copy(contact_.size(), solution.force.data(), contact_.data());
     small::copy(contact_.size(), contact_.data(), next_.force.data());
     friction_step_ = friction_work(last_->model->blocks, now_, next_);
-    if (impacts_) apply_impact(level);
+    if (impacts_) {
+      const double taken = impact_loss_;
+      apply_impact(level);
+      // pressure and friction act together: what one gives while the other takes more is no energy that contact has given
+      const double given = std::max(0.0, std::min(taken - impact_loss_, friction_step_));
+      friction_step_ -= given, impact_loss_ += given;
+    }
     small::copy(contact_.size(), contact_.data(), next_.force.data());
     small::copy(contact_.size(), contact_.data(), next_.mean_force.data());
     if (impacts_ && impact_.force_includes_impulse()) next_.mean_force += impulse_ / level.step;

@@ -90,7 +90,6 @@ void Stepper::apply_impact(Level& level) {
   impact_impulse_.setZero();
   impulse_.setZero();
   kick_next_.step = 0;
-  const double loss_before = impact_loss_;
   impact_loss_ += contact_work(contact_, next_.opening);
   if (!select_pressed(last_->model->blocks, contact_)) return;
   Impact data = impact_data(contact_);
@@ -106,10 +105,6 @@ void Stepper::apply_impact(Level& level) {
   std::swap(data.tangents, tangents_);
   bulk_.mass.multiply(next_.velocity, momentum_next_);
   impact_loss_ += before - 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
-  if (with_friction) {  // friction of the multiplier that the impulse has given back is no work of friction
-    const double back = std::clamp(loss_before - impact_loss_, 0.0, friction_step_);
-    friction_step_ -= back, impact_loss_ += back;
-  }
   if (impact_.holds_acceleration() && !with_friction) separate_impulse(data);
   if (level.impact != nullptr) balance_damping(level, data, with_friction);
 }
@@ -137,10 +132,12 @@ void Stepper::read_forces(const Impact& data, bool with_friction) {
   for (const Block& block : last_->model->blocks) {
     if (block.cone == nullptr) continue;
     const int n = block.batch.points, normal = block.first + block.batch.normal();
-    const auto smooth = impact_scratch_.impulse.segment(normal, n) / data.acceleration_weight;
+    const auto smooth = impact_scratch_.impulse.segment(normal, n) / data.acceleration_weight;  // that of other rows is of no step
     if (block.cone->friction() > 0) {
-      const double pressure = contact_.segment(normal, n).sum();
-      if (with_friction && pressure < 0) contact_.segment(block.first, block.rows()) *= smooth.sum() / pressure;
+      double before = 0, after = 0;
+      for (int i = 0; i < n; ++i)
+        if (pressed_[normal + i] > 0) before += contact_[normal + i], after += smooth[i];
+      if (with_friction && before < 0) contact_.segment(block.first, block.rows()) *= after / before;
       continue;
     }
     for (int i = 0; i < n; ++i)

@@ -176,17 +176,14 @@ double InterfaceViewer::tension_share(const Layout& layout, const double* force)
   return layout.share.positive(value_.data());
 }
 
-/// The largest pressure at the edges of the base that no point reaches: linear from the points next to them, where these are in contact.
+/// The largest pressure at the edges of the base that no point reaches: linear from the points next to them, of which those that bear
+/// nothing have the pressure zero. It does not jump when one of them loses contact.
 double InterfaceViewer::edge_pressure(const Layout& layout, const double* force) {
   double most = 0;
   for (const Facets::Corner& corner : layout.corners) {
     double traction = 0;
-    bool contact = true;
-    for (const auto& [point, weight] : corner) {
-      traction += weight * force[point] * layout.inverse_area[point];
-      contact = contact && force[point] < 0;
-    }
-    if (contact) most = larger(most, -traction);
+    for (const auto& [point, weight] : corner) traction += weight * std::min(0.0, force[point]) * layout.inverse_area[point];
+    most = larger(most, -traction);
   }
   return most;
 }

@@ -71,6 +71,33 @@ TEST(InterfaceViewer, NoGapIsExtrapolatedFromClosedPoints) {
   EXPECT_EQ(largest_gap(joints, {2}, line_facets(joints, 1), [](const Place& x) { return -1e-3 * (x.x() + 2); }), 0);
 }
 
+/// The largest pressure of one interface with these pressures at its points.
+double largest_pressure(const std::vector<JointPoint>& points, Space space, Facets facets, const std::vector<double>& pressure) {
+  Model model;
+  model.space = space;
+  model.interfaces.push_back(interface_of(points, space));
+  InterfaceViewer viewer(model, 1e-9, {}, {std::make_shared<const Facets>(std::move(facets))});
+  State state;
+  state.opening = state.force = state.mean_force = Vector::Zero(static_cast<Index>(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    state.force[static_cast<Index>(i)] = state.mean_force[static_cast<Index>(i)] = -pressure[i] * points[i].area;
+  std::vector<InterfaceView> views;
+  viewer.look(state, views);
+  return views.front().max_pressure;
+}
+
+// At midpoints the pressure at the toe is 3/2 of that of the last point less 1/2 of the next one's; it does not jump where that one begins
+// to bear, and a point that pulls or is open takes nothing from it.
+TEST(InterfaceViewer, PressureAtTheToeDoesNotJump) {
+  const auto joints = footing_points({.width = 4, .points = 4, .rule = FootingRule::midpoint}, here);
+  const auto at_toe = [&](double last, double next) { return largest_pressure(joints, {2}, line_facets(joints, 1), {last, next, 0, 0}); };
+  EXPECT_NEAR(at_toe(8, 4), 10, 1e-12);
+  EXPECT_NEAR(at_toe(8, 1e-9), 12, 1e-8);
+  EXPECT_NEAR(at_toe(8, 0), 12, 1e-12);
+  EXPECT_NEAR(at_toe(8, -3), 12, 1e-12);
+  EXPECT_NEAR(at_toe(0, 8), 8, 1e-12);
+}
+
 // A raft that is turned about both axes has its largest gap at a corner.
 TEST(InterfaceViewer, GapAtTheCornerOfARigidRaft) {
   for (const FootingRule rule : all_rules)

@@ -1,0 +1,155 @@
+// Energy and forces of contact by constraints where the step does not resolve what moves the base: loads that turn round within a few
+// steps. Contact and friction then take energy, and none is created.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "unit/case/cut_support.h"
+
+namespace uplift::contact_balance_test {
+namespace {
+
+using namespace support;
+
+/// A rigid block of 6.1 t whose centre lies at (0, height), 9.2 m wide, whose ground moves 5.36 times a second.
+std::string block(double height, double amplitude, double step, const std::string& law, const std::string& more = "") {
+  return fmt::format(R"(title = "block"
+bonded = false
+method = "lagrange"
+[nodes]
+base = [0, 0]
+[[rigid]]
+name = "raft"
+node = "base"
+mass = 6100
+inertia = 190000
+centre = [0, {}]
+[[interface]]
+name = "ground"
+footing = {{ body = "base", width = 9.2, thickness = 4.9, points = 8 }}
+law = {{ {} }}
+[gravity]
+acceleration = [0, -9.81]
+[[function]]
+name = "shake"
+shape = {{ type = "harmonic", frequency = 5.36, end = 0.56 }}
+[[ground_acceleration]]
+function = "shake"
+direction = [1, 0]
+amplitude = {}
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 3
+step = {}
+{}
+)",
+                     height, law, amplitude, step, more);
+}
+
+// The first rise of the block takes the force of the beginning of its step over half a step: energy that no impact before has taken.
+TEST(ContactBalance, ContactGivesBackNoMoreThanItHasTaken) {
+  for (const double step : {0.01, 0.03, 0.048}) {
+    const std::string text = block(8.5, 6, step, "type = \"unilateral\"", "[[support]]\nnode = \"base\"\nfixed = [\"ux\"]\n");
+    const RunResult result = run_on(text, {});
+    EXPECT_EQ(result.status, RunStatus::completed) << result.reason;
+    EXPECT_GT(result.max_opening.value, 1e-4) << step;
+    EXPECT_LE(result.energy_created, 1e-7 * result.energy_scale) << step;
+    EXPECT_GE(result.final_energy.impact, -1e-7 * result.energy_scale) << step;
+  }
+}
+
+// A low block slides to and fro and does not lift off: what the ground puts in, friction and the ends of slips take.
+TEST(ContactBalance, FrictionThatTurnsRoundGivesNothingBack) {
+  for (const double step : {0.01, 0.03, 0.048}) {
+    const RunResult result = run_on(block(1, 6, step, "type = \"coulomb\", friction = 0.17"), {});
+    EXPECT_EQ(result.status, RunStatus::completed) << result.reason;
+    EXPECT_LT(result.max_opening.value, 1e-12);
+    EXPECT_LE(result.energy_created, 1e-8 * result.energy_scale) << step;
+    EXPECT_GT(result.final_energy.friction, 0.9 * result.energy_scale) << step;
+  }
+}
+
+// Under a horizontal load, whatever its direction, a column presses with its weight as long as its base stays on the ground: in the steps
+// where a part of the points bears nothing too.
+TEST(ContactBalance, AColumnPressesWithItsWeight) {
+  constexpr double raft = 1636352, mass = 282442, weight = 9.81 * (raft + 3 * mass);
+  for (const double load : {8.7e6, -8.7e6, 8.8e6, -8.8e6}) {
+    const std::string text = fmt::format(R"(title = "column"
+bonded = false
+method = "lagrange"
+[nodes]
+base = [0, 0]
+n0 = [0, 3.26]
+n1 = [0, 6.52]
+n2 = [0, 9.78]
+[[beam]]
+name = "b0"
+nodes = ["base", "n0"]
+E = 3e10
+I = 44.6
+[[beam]]
+name = "b1"
+nodes = ["n0", "n1"]
+E = 3e10
+I = 56.5
+A = 678
+[[beam]]
+name = "b2"
+nodes = ["n1", "n2"]
+E = 3e10
+I = 45
+A = 185
+[[mass]]
+node = "n0"
+mass = {1}
+[[mass]]
+node = "n1"
+mass = {1}
+[[mass]]
+node = "n2"
+mass = {1}
+inertia = 4.36e6
+[[rigid]]
+name = "raft"
+node = "base"
+mass = {0}
+inertia = 3.325e7
+[[interface]]
+name = "ground"
+footing = {{ body = "base", width = 12.17, thickness = 8.4, points = 11, rule = "gauss" }}
+law = {{ type = "coulomb", friction = 0.49 }}
+[gravity]
+acceleration = [0, -9.81]
+[[function]]
+name = "push"
+shape = {{ type = "harmonic", frequency = 25, end = 0.12 }}
+[[load]]
+node = "n2"
+force = [{2}, 0]
+function = "push"
+[damping]
+rayleigh = [{{ frequency = 14.1, ratio = 0.05 }}]
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 0.28
+step = 7e-4
+p_delta = true
+)",
+                                         raft, mass, load);
+    const RunResult result = run_on(text, {});
+    ASSERT_EQ(result.status, RunStatus::completed) << result.reason;
+    EXPECT_LT(result.max_opening.value, 1e-12);
+    const auto axial = history(result, "ground.axial");
+    ASSERT_GT(axial.size(), 300u);
+    for (std::size_t i = 0; i < axial.size(); ++i) ASSERT_NEAR(axial[i], -weight, 1e-8 * weight) << i << ' ' << load;
+  }
+}
+
+}  // namespace
+}  // namespace uplift::contact_balance_test
