@@ -160,6 +160,16 @@ void Stepper::move_gap(double from, double to) {
   }
 }
 
+/// And their rates, which impacts and held points need.
+void Stepper::move_rates(double time) {
+  moved_velocity_.setZero(b_.rows());
+  moved_acceleration_.setZero(b_.rows());
+  for (const PrescribedMotion& motion : model_.motions) {
+    moved_velocity_ += motion.opening * motion.function->rate(time);
+    moved_acceleration_ += motion.opening * motion.function->acceleration(time);
+  }
+}
+
 void Stepper::products(const Vector& u, const Vector& v, Vector& ku, Vector& mv) const {
   if (pair_ != nullptr) {
     pair_->multiply(u, v, ku, mv);
@@ -305,6 +315,7 @@ bool Stepper::try_step(Level& level) {
   next_.time = now_.time + level.step;
   force_at(next_.time, force_next_);
   if (gap_moves_) move_gap(now_.time, next_.time);
+  if (gap_moves_ && impacts_) move_rates(next_.time);
   if (!balance_step(level)) return false;
   const InterfaceSolution& solution = *solution_;
   if (shift_.size() > 0) {

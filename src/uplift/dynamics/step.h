@@ -124,6 +124,7 @@ class Stepper {
   void follow_state();
   void force_at(double time, Vector& force) const;
   void move_gap(double from, double to);
+  void move_rates(double time);
   /// ku = K u and mv = M v, in one pass where the bulk is large.
   void products(const Vector& u, const Vector& v, Vector& ku, Vector& mv) const;
   void right_hand_side(const Level& level);
@@ -177,6 +178,7 @@ class Stepper {
   const Vector& still_gap_;  // initial gaps
   Vector still_force_;       // that do not change in the stage: StepOptions::held and the loads that never change [N, N m]
   Vector gap_, gap_step_;    // with the prescribed motions at the end of the step, and their change in the step
+  Vector moved_velocity_, moved_acceleration_;  // rows: rates of the openings that prescribed motions make, at the same time [m/s, m/s2]
   const Behaviours& behaviours_;
   const ContactMethod& method_;
   const ImpactRule& impact_;

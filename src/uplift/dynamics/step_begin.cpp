@@ -38,8 +38,9 @@ Carried carried_by(const Block& block, const Vector& force) {
 
 /// Points whose faces part from the first instant on press no longer, whatever the stage before says.
 void Stepper::release_parting() {
-  if (b_.rows() == 0 || now_.velocity.isZero(0)) return;
-  const Vector rate = b_ * now_.velocity;
+  if (b_.rows() == 0 || (now_.velocity.isZero(0) && !gap_moves_)) return;
+  Vector rate = b_ * now_.velocity;
+  if (gap_moves_) rate += moved_velocity_;
   const double nothing = 1e-12 * rate.cwiseAbs().maxCoeff();
   for (const Block& block : blocks_of(model_, behaviours_).blocks) {
     if (block.cone == nullptr) continue;
@@ -53,7 +54,8 @@ void Stepper::release_parting() {
 /// The rows on which a stage begins without any contact force: closed normal rows that do not open, and the tangents of their points, which
 /// are taken to stick. False when there are none.
 bool Stepper::select_closed(const std::vector<Block>& blocks) {
-  const Vector rate = b_ * now_.velocity;
+  Vector rate = b_ * now_.velocity;
+  if (gap_moves_) rate += moved_velocity_;
   bool any = false;
   pressed_.setZero(b_.rows());
   tangents_.clear();
@@ -77,7 +79,7 @@ bool Stepper::project_initial(Impact& data, Vector& acceleration) {
   std::swap(data.tangents, tangents_);
   const bool any = select_rows(data, Hold::inequality, impact_scratch_);
   if (any) {
-    project_rate(data, acceleration, 1, Select::all, impact_scratch_);
+    project_rate(data, acceleration, data.moved_acceleration, 1, Select::all, impact_scratch_);
     correct(data, 1, acceleration, impact_scratch_);
     for (Eigen::Index row = 0; row < pressed_.size(); ++row)
       if (pressed_[row] > 0) contact_[row] = impact_scratch_.impulse[row];
@@ -166,6 +168,7 @@ void Stepper::start(State state, const Ledger* before) {
   if (path_) {
     now_.acceleration.setZero(n);
   } else if (before == nullptr || !before->acceleration) {
+    if (gap_moves_) move_rates(now_.time);
     release_parting();
     forces_at(now_, work_);
     now_.acceleration.setZero(n);

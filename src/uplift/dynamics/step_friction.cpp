@@ -131,19 +131,20 @@ bool Stepper::strikes(const Impact& data) {
   if (!any_without_pressure(blocks, now_.force, contact_, [](int, bool) { return true; })) return false;
   const bool open = lifted(blocks, now_, contact_, next_.opening, closed_gap_);
   if (open && moves(now_.opening, next_.opening, closed_gap_)) return true;
-  const auto goes_on = [&](const Vector& motion, double weight) {
-    row_rates(data, motion, 0, contact_.size(), friction_.rates);
+  const auto goes_on = [&](const Vector& motion, const Vector* moved, double weight) {
+    row_rates(data, motion, moved, 0, contact_.size(), friction_.rates);
     if (open) return weight * friction_.rates.cwiseAbs().maxCoeff() > still * closed_gap_;
     return any_without_pressure(blocks, now_.force, contact_,
                                 [&](int row, bool) { return weight * std::abs(friction_.rates[row]) > still * closed_gap_; });
   };
-  return goes_on(next_.velocity, data.step) || goes_on(next_.acceleration, data.step * data.step);
+  return goes_on(next_.velocity, data.moved_velocity, data.step) || goes_on(next_.acceleration, data.moved_acceleration, data.step * data.step);
 }
 
 /// Velocity and acceleration by the rule of the case: impulses spread with the damping force that they change. Where a point with friction
 /// is open, friction belongs to the impulse (true); elsewhere sliding points slide on, and the rule alone is exact.
 bool Stepper::apply_rule(const Level& level, Impact& data) {
   if (strikes(data) && impact_of_friction(level, data)) return true;
+  impulse_.setZero();
   if (level.impact != nullptr) data.mass = level.impact.get();
   impact_.apply(data, next_.velocity, impulse_, impact_scratch_);
   if (!impact_.holds_acceleration()) return false;
@@ -167,7 +168,7 @@ bool Stepper::impact_of_friction(const Level& level, const Impact& data) {
   now.push.noalias() = spread.factor.transpose() * now.dropped;
   now.velocity = next_.velocity;
   spread.add(data.velocity_weight, now.push, now.velocity);
-  row_rates(data, now.velocity, 0, contact_.size(), now.rates);
+  row_rates(data, now.velocity, data.moved_velocity, 0, contact_.size(), now.rates);
   now.takes_part = pressed_;  // and those that are closed without a pressure: under a rigid base which ones is not unique
   for (const Block& block : blocks) {
     if (block.cone == nullptr) continue;
@@ -178,6 +179,7 @@ bool Stepper::impact_of_friction(const Level& level, const Impact& data) {
   if (!impulses.solve(now.rates, now.takes_part, still * closed_gap_ / level.step)) return false;
   spread.add(1, impulses.z(), now.velocity);
   now.impulse = impulses.impulse();
+  impulse_ = now.impulse - data.velocity_weight * now.dropped;
 
   // the force after the impact
   const double at_rest = 1e-9 * now.rates.cwiseAbs().maxCoeff();
@@ -207,7 +209,8 @@ bool Stepper::obey_friction(const Spread& spread, CoulombRates& law, const Impac
   now.push.noalias() = spread.factor.transpose() * now.dropped;
   spread.add(data.acceleration_weight, now.push, acceleration);
   now.soon = velocity + time * acceleration;
-  row_rates(data, now.soon, 0, contact_.size(), now.rates);
+  row_rates(data, now.soon, data.moved_velocity, 0, contact_.size(), now.rates);
+  if (data.moved_acceleration != nullptr) now.rates += time * *data.moved_acceleration;
   if (!law.solve(now.rates, now.takes_part, still * closed_gap_ / data.step)) return false;
   spread.add(1 / time, law.z(), acceleration);
   for (const Block& block : last_->model->blocks)

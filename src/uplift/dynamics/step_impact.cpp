@@ -65,6 +65,7 @@ Impact Stepper::impact_data(const Vector& force) const {
   data.pressed = &pressed_;
   data.force = &force;
   data.area = &row_area_;
+  if (gap_moves_) data.moved_velocity = &moved_velocity_, data.moved_acceleration = &moved_acceleration_;
   return data;
 }
 
@@ -105,6 +106,10 @@ void Stepper::apply_impact(Level& level) {
   std::swap(data.tangents, tangents_);
   bulk_.mass.multiply(next_.velocity, momentum_next_);
   impact_loss_ += before - 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
+  if (gap_moves_) {  // what moving supports put in by the impulses
+    const double work = impulse_.dot(moved_velocity_);
+    impact_loss_ += work, energies_.external += work;
+  }
   if (impact_.holds_acceleration() && !with_friction) separate_impulse(data);
   if (level.impact != nullptr) balance_damping(level, data, with_friction);
 }
@@ -180,7 +185,7 @@ void Stepper::balance_damping(const Level& level, Impact& data, bool with_fricti
     if (!obey_friction(*level.impact, *level.coulomb, data, next_.velocity, next_.acceleration)) next_.acceleration = kick.acceleration;
   } else {
     impact_scratch_.taken = impact_scratch_.impulse / data.acceleration_weight;
-    project_rate(data, next_.acceleration, data.acceleration_weight, Select::all, impact_scratch_);
+    project_rate(data, next_.acceleration, data.moved_acceleration, data.acceleration_weight, Select::all, impact_scratch_);
     correct(data, 1, next_.acceleration, impact_scratch_);
     read_forces(data, true);
   }

@@ -24,14 +24,17 @@ struct Impact {
   const Vector* area = nullptr;    // all rows: the same weight, for the tangents; null: all alike
   double velocity_weight = 0;      // gamma * dt [s]: a force p at the end of the step put -velocity_weight * M^-1 B^T p into the velocity
   double step = 0;                 // s: of the step just solved
+  // all rows: what prescribed motions alone make of the openings' rates at the end of the step [m/s, m/s2]; null: nothing
+  const Vector* moved_velocity = nullptr;
+  const Vector* moved_acceleration = nullptr;
   double acceleration_weight = 1;  // and -acceleration_weight * M^-1 B^T p into the acceleration
 };
 
 /// Work space of a rule, sized at the first call and kept between steps.
 struct ImpactScratch {
   KernelScratch kernel;
-  Vector target, limit, fixed, held;  // rows: B v without the contact force, weights of the rows (kernel.h)
-  Vector rate, taken, impulse;        // rows: B v corrected, force that was taken out, total impulse
+  Vector target, limit, fixed, held;  // rows: rate of the opening without the contact force, weights of the rows (kernel.h)
+  Vector rate, taken, impulse;        // rows: that rate corrected, force that was taken out, total impulse
   Vector total;                       // rows: total impulse of the velocity, where the acceleration is projected too
   Vector y, push;                     // r
   Index first = 0, count = 0;         // range of rows that holds the active ones

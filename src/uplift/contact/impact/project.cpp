@@ -7,7 +7,7 @@ class Project final : public ImpactRule {
  public:
   void apply(const Impact& impact, Vector& velocity, Vector& impulse, ImpactScratch& scratch) const override {
     if (!select_rows(impact, Hold::inequality, scratch)) return;
-    project_rate(impact, velocity, impact.velocity_weight, Select::all, scratch);
+    project_rate(impact, velocity, impact.moved_velocity, impact.velocity_weight, Select::all, scratch);
     correct(impact, 1, velocity, scratch);
     add_impulse(impact, 1, impulse, scratch);
   }

@@ -8,14 +8,14 @@ class ProjectHold final : public ImpactRule {
   bool holds_acceleration() const override { return true; }
   void apply(const Impact& impact, Vector& velocity, Vector& impulse, ImpactScratch& scratch) const override {
     if (!select_rows(impact, Hold::inequality, scratch)) return;
-    project_rate(impact, velocity, impact.velocity_weight, Select::all, scratch);
+    project_rate(impact, velocity, impact.moved_velocity, impact.velocity_weight, Select::all, scratch);
     correct(impact, 1, velocity, scratch);
     add_impulse(impact, 1, impulse, scratch);
     scratch.total = scratch.impulse;
   }
   void hold(const Impact& impact, Vector& acceleration, ImpactScratch& scratch) const override {
     if (scratch.count == 0) return;
-    project_rate(impact, acceleration, impact.acceleration_weight, Select::held, scratch);
+    project_rate(impact, acceleration, impact.moved_acceleration, impact.acceleration_weight, Select::held, scratch);
     correct(impact, 1, acceleration, scratch);
   }
 };

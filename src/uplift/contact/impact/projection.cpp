@@ -36,11 +36,12 @@ constexpr double at_rest = 1e-12;  // rate that counts as zero, relative to the 
 
 }  // namespace
 
-void row_rates(const Impact& impact, const Vector& v, Index first, Index n, Vector& result) {
+void row_rates(const Impact& impact, const Vector& v, const Vector* moved, Index first, Index n, Vector& result) {
   if (impact.b != nullptr)
     multiply(*impact.b, first, n, v.data(), result.data() + first);
   else
     result.noalias() = *impact.sparse_b * v;
+  if (moved != nullptr) small::add(n, 1, moved->data() + first, result.data() + first);
 }
 
 bool select_rows(const Impact& impact, Hold hold, ImpactScratch& scratch) {
@@ -75,7 +76,7 @@ bool select_rows(const Impact& impact, Hold hold, ImpactScratch& scratch) {
   return true;
 }
 
-void project_rate(const Impact& impact, const Vector& rate, double weight, Select select, ImpactScratch& scratch) {
+void project_rate(const Impact& impact, const Vector& rate, const Vector* moved, double weight, Select select, ImpactScratch& scratch) {
   const Matrix& c = impact.mass->factor;
   const Index first = scratch.first, n = scratch.count, r = c.cols();
   double* limit = scratch.limit.data() + first;
@@ -86,7 +87,7 @@ void project_rate(const Impact& impact, const Vector& rate, double weight, Selec
 #pragma omp simd
     for (Index i = 0; i < n; ++i) limit[i] = before[i] > 1e3 * at_rest * largest ? 0 : limit[i];
   }
-  row_rates(impact, rate, first, n, scratch.target);
+  row_rates(impact, rate, moved, first, n, scratch.target);
   for (Index k = 0; k < r; ++k) scratch.push[k] = weight * small::dot(n, c.data() + k * c.rows() + first, scratch.taken.data() + first);
   for (Index k = 0; k < r; ++k) small::add(n, scratch.push[k], c.data() + k * c.rows() + first, target);
   Rows rows{n, r, c.rows(), c.data() + first, target, limit, scratch.any_fixed ? scratch.fixed.data() + first : nullptr, 0, at_rest};

@@ -1,0 +1,150 @@
+// Points under constraints on supports that move by themselves: their velocities and accelerations are those relative to the support.
+// Closed forms of a mass on a shaking table.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "unit/verdict/verdict_support.h"
+
+namespace uplift::moving_supports_test {
+namespace {
+
+using namespace support;
+using std::numbers::pi;
+
+constexpr double mass = 1000, g = 9.81, frequency = 2, omega = 2 * pi * frequency, friction = 0.4;
+
+/// A mass on a table that moves by -A cos(omega t), along `axis`.
+struct Table {
+  std::string axis = "uy", fixed = R"(["ux", "rz"])", law = R"({ type = "unilateral" })", method = "lagrange", scheme = "average_acceleration";
+  double acceleration = 1;  // A omega^2 over g
+  double duration = 0.5, step = 2e-4;
+  double amplitude() const { return acceleration * g / (omega * omega); }
+
+  RunResult run() const {
+    return run_of(built_of(fmt::format(R"(title = "table"
+bonded = false
+method = "{}"
+[nodes]
+b = [0, 0]
+table = [0, 0]
+[[rigid]]
+node = "b"
+mass = 1000
+inertia = 300
+[[support]]
+node = "b"
+fixed = {}
+[[support]]
+node = "table"
+fixed = ["{}"]
+[[motion]]
+node = "table"
+direction = "{}"
+amplitude = {}
+function = "shake"
+[[function]]
+name = "shake"
+shape = {{ type = "harmonic", frequency = 2, phase = "-90 deg" }}
+[gravity]
+[[interface]]
+name = "f"
+pairs = {{ upper = ["b"], lower = ["table"], area = 1 }}
+law = {}
+[limits]
+separation = 100
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = {}
+step = {}
+scheme = "{}"
+)",
+                                       method, fixed, axis == "uy" ? "ux" : "uy", axis, amplitude(), law, duration, step, scheme)));
+  }
+};
+
+const std::vector<double>& column(const RunResult& run, const std::string& name) {
+  for (std::size_t k = 0; k < run.columns.size(); ++k)
+    if (run.columns[k].name == name) return run.table[k + 1];
+  ADD_FAILURE() << "no column " << name;
+  return run.table.front();
+}
+
+/// While A omega^2 < g the mass stays on the table and presses it with m (g + A omega^2 cos(omega t)). It takes the velocity of the table.
+TEST(MovingSupport, AMassThatStaysPressesWithItsInertia) {
+  for (const char* method : {"lagrange", "augmented_lagrangian"})
+    for (const char* law : {R"({ type = "unilateral" })", R"({ type = "coulomb", friction = 0.4 })"})
+      for (const char* scheme : {"average_acceleration", "hht"}) {
+        const Table table{.law = law, .method = method, .scheme = scheme, .acceleration = 0.5, .duration = 0.4};
+        const RunResult run = table.run();
+        const std::string trace = fmt::format("{} {} {}", method, law, scheme);
+        ASSERT_EQ(run.status, RunStatus::completed) << trace << run.reason;
+        const std::vector<double>&axial = column(run, "f.axial"), &time = run.table.front();
+        for (std::size_t i = 1; i < axial.size(); i += 7)
+          EXPECT_NEAR(axial[i], -mass * g * (1 + 0.5 * std::cos(omega * time[i])), 5e-4 * mass * g) << trace << " " << time[i];
+        const double speed = table.amplitude() * omega * std::sin(omega * table.duration);
+        EXPECT_NEAR(run.final_energy.kinetic, 0.5 * mass * speed * speed, 1e-3 * mass * g * table.amplitude()) << trace;
+        EXPECT_NEAR(run.final_energy.impact, 0, 1e-3 * mass * g * table.amplitude()) << trace;
+      }
+}
+
+/// Beyond it the mass leaves the table where A omega^2 cos(omega t) = -g, flies, and lands: the highest gap, and the energy of the impact,
+/// that of the velocity relative to the table.
+TEST(MovingSupport, AMassThatIsThrownLandsOnTheMovingTable) {
+  for (const char* law : {R"({ type = "unilateral" })", R"({ type = "coulomb", friction = 0.4 })"}) {
+    const Table table{.law = law, .acceleration = 1.5, .duration = 0.55, .step = 1e-4};
+    const double a = table.amplitude(), leaves = std::acos(-1 / 1.5) / omega;
+    const auto gap = [&](double t) {
+      const double s = t - leaves;
+      return -a * std::cos(omega * leaves) + a * omega * std::sin(omega * leaves) * s - 0.5 * g * s * s + a * std::cos(omega * t);
+    };
+    double lands = leaves + 0.05, highest = 0;
+    for (; gap(lands) > 0; lands += 1e-6) highest = std::max(highest, gap(lands));
+    const double rate = a * omega * std::sin(omega * leaves) - g * (lands - leaves) - a * omega * std::sin(omega * lands);
+    ASSERT_LT(lands, table.duration);
+    ASSERT_GT(std::cos(omega * table.duration), -1 / 1.5);  // it has not left again
+    const RunResult run = table.run();
+    ASSERT_EQ(run.status, RunStatus::completed) << law << run.reason;
+    EXPECT_NEAR(run.max_opening.value, highest, 2e-3 * highest) << law;
+    EXPECT_NEAR(run.final_energy.impact, 0.5 * mass * rate * rate, 5e-3 * 0.5 * mass * rate * rate) << law;
+    EXPECT_NEAR(column(run, "f.axial").back(), -mass * g * (1 + 1.5 * std::cos(omega * table.duration)), 1e-3 * mass * g) << law;
+    EXPECT_LT(run.energy_created, 1e-3 * mass * rate * rate) << law;
+  }
+}
+
+/// Shaken sideways with A omega^2 = 2 mu g it slides with mu g from the first instant on, until it is as fast as the table, 2 sin x = x with
+/// x = omega t, and then sticks until cos x = -1/2.
+TEST(MovingSupport, AMassSlidesOnATableThatMovesSideways) {
+  double meets = 1.5;
+  for (int i = 0; i < 100; ++i) meets = 2 * std::sin(meets);  // contracts: |2 cos x| < 1
+  const double until = 2.05;
+  ASSERT_LT(meets, until);
+  for (const char* method : {"lagrange", "augmented_lagrangian"}) {
+    const Table table{.axis = "ux",
+                      .fixed = R"(["rz"])",
+                      .law = R"({ type = "coulomb", friction = 0.4 })",
+                      .method = method,
+                      .acceleration = 2 * friction,
+                      .duration = until / omega,
+                      .step = until / omega / 1000};
+    const RunResult run = table.run();
+    ASSERT_EQ(run.status, RunStatus::completed) << method << run.reason;
+    const std::vector<double>&ux = column(run, "b.ux"), &time = run.table.front();
+    const double a = table.amplitude(), sliding = 0.5 * friction * g * std::pow(meets / omega, 2);
+    for (std::size_t i = 10; i < ux.size(); i += 10) {
+      const double x = omega * time[i],
+                   exact = x < meets ? 0.5 * friction * g * time[i] * time[i] : sliding + a * (std::cos(meets) - std::cos(x));
+      EXPECT_NEAR(ux[i], ux[0] + exact, 5e-3 * a) << method << " " << time[i];
+    }
+    const double slip = a * (1 - std::cos(meets)) - sliding, force = friction * mass * g;
+    EXPECT_NEAR(run.final_energy.interface_dissipated, force * slip, 5e-3 * force * slip) << method;
+    EXPECT_NEAR(std::abs(column(run, "f.shear").back()), mass * 2 * friction * g * std::abs(std::cos(until)), 1e-2 * force) << method;
+  }
+}
+
+}  // namespace
+}  // namespace uplift::moving_supports_test
