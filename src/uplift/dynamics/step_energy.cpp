@@ -23,9 +23,7 @@ void Stepper::book_energies(const Level& level) {
     external = sums[0], strain = sums[1], kinetic = sums[2];
   });
   energies_.external += 0.5 * external;
-  if (gap_moves_)  // what moving supports put in through the interfaces
-    for (Eigen::Index i = 0; i < gap_step_.size(); ++i)
-      energies_.external += (path_ ? next_.mean_force[i] : 0.5 * (now_.force[i] + next_.force[i])) * gap_step_[i];
+  if (gap_moves_ && path_) energies_.external += next_.mean_force.dot(gap_step_);  // what moving supports put in through the interfaces
   if (!bulk_.damping.zero()) {
     // work of the damping force, mean of both ends; average acceleration: C du/dt . du, with the velocity before an impact at the end
     if (path_ || (impacts_ && options_.scheme.average_acceleration()))
