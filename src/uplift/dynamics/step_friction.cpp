@@ -32,6 +32,24 @@ bool lifted(const std::vector<Block>& blocks, const State& before, const Vector&
                               [&](int row, bool at_end) { return (at_end ? opening : before.opening)[row] > closed_gap; });
 }
 
+/// Work of friction in a step in which a gap closes, by the impulses P that act: sum of max(0, 1/2 p_0 . dg + 1/2 P . (r_0 + r_1)) with the
+/// rates r of the slip before and after; `rates` is their sum. The multiplier of such a step may be up to twice the impulse over the step.
+double friction_of_impulses(const std::vector<Block>& blocks, const State& before, const State& after, const Vector& impulse,
+                            const Vector& rates) {
+  double work = 0;
+  for (const Block& block : blocks) {
+    if (block.cone == nullptr) continue;
+    const int n = block.batch.points;
+    for (int i = block.first; i < block.first + n; ++i) {
+      double of_point = 0;
+      for (int c = 0, row = i; c + 1 < block.batch.components; ++c, row += n)
+        of_point += 0.5 * before.force[row] * (after.opening[row] - before.opening[row]) + 0.5 * impulse[row] * rates[row];
+      work += std::max(0.0, of_point);
+    }
+  }
+  return work;
+}
+
 bool moves(const Vector& one, const Vector& other, double closed_gap) {
   return (one - other).cwiseAbs().maxCoeff() > still * closed_gap;
 }
@@ -137,7 +155,8 @@ bool Stepper::strikes(const Impact& data) {
     return any_without_pressure(blocks, now_.force, contact_,
                                 [&](int row, bool) { return weight * std::abs(friction_.rates[row]) > still * closed_gap_; });
   };
-  return goes_on(next_.velocity, data.moved_velocity, data.step) || goes_on(next_.acceleration, data.moved_acceleration, data.step * data.step);
+  return goes_on(next_.velocity, data.moved_velocity, data.step) ||
+         goes_on(next_.acceleration, data.moved_acceleration, data.step * data.step);
 }
 
 /// Velocity and acceleration by the rule of the case: impulses spread with the damping force that they change. Where a point with friction
@@ -192,6 +211,13 @@ bool Stepper::impact_of_friction(const Level& level, const Impact& data) {
   if (!obey_friction(soft ? *level.impact : *mass_spread_, soft ? *level.coulomb : *coulomb_, data, now.velocity, now.after)) return false;
   next_.velocity = now.velocity, next_.acceleration = now.after;
   if (!closing_) return true;
+  now.velocity += now_.velocity;
+  row_rates(data, now.velocity, data.moved_velocity, 0, contact_.size(), now.rates);
+  if (gap_moves_)
+    for (const PrescribedMotion& motion : model_.motions) now.rates += motion.opening * motion.function->rate(now_.time);
+  impact_loss_ += friction_step_;
+  friction_step_ = friction_of_impulses(blocks, now_, next_, now.impulse, now.rates);
+  impact_loss_ -= friction_step_;
   for (const Block& block : blocks) {
     if (block.cone == nullptr) continue;
     const int normal = block.first + block.batch.normal(), n = block.batch.points;

@@ -18,7 +18,8 @@ constexpr double mass = 1000, g = 9.81, frequency = 2, omega = 2 * pi * frequenc
 
 /// A mass on a table that moves by -A cos(omega t), along `axis`.
 struct Table {
-  std::string axis = "uy", fixed = R"(["ux", "rz"])", law = R"({ type = "unilateral" })", method = "lagrange", scheme = "average_acceleration";
+  std::string axis = "uy", fixed = R"(["ux", "rz"])", law = R"({ type = "unilateral" })", method = "lagrange",
+              scheme = "average_acceleration";
   double acceleration = 1;  // A omega^2 over g
   double duration = 0.5, step = 2e-4;
   double amplitude() const { return acceleration * g / (omega * omega); }
@@ -116,8 +117,8 @@ TEST(MovingSupport, AMassThatIsThrownLandsOnTheMovingTable) {
   }
 }
 
-/// Shaken sideways with A omega^2 = 2 mu g it slides with mu g from the first instant on, until it is as fast as the table, 2 sin x = x with
-/// x = omega t, and then sticks until cos x = -1/2.
+/// Shaken sideways with A omega^2 = 2 mu g it slides with mu g from the first instant on, until it is as fast as the table, 2 sin x = x
+/// with x = omega t, and then sticks until cos x = -1/2.
 TEST(MovingSupport, AMassSlidesOnATableThatMovesSideways) {
   double meets = 1.5;
   for (int i = 0; i < 100; ++i) meets = 2 * std::sin(meets);  // contracts: |2 cos x| < 1

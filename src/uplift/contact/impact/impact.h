@@ -19,11 +19,11 @@ struct Impact {
   // all rows: weight of the active normal rows (compressed), 0 elsewhere: the area of the row's point [m2], by which redundant impulses are
   // shared, or all alike
   const Vector* pressed = nullptr;
-  std::vector<int> tangents;       // sticking tangential rows: equalities
-  const Vector* force = nullptr;   // all rows: contact force at the end of the step [N], tension > 0
-  const Vector* area = nullptr;    // all rows: the same weight, for the tangents; null: all alike
-  double velocity_weight = 0;      // gamma * dt [s]: a force p at the end of the step put -velocity_weight * M^-1 B^T p into the velocity
-  double step = 0;                 // s: of the step just solved
+  std::vector<int> tangents;      // sticking tangential rows: equalities
+  const Vector* force = nullptr;  // all rows: contact force at the end of the step [N], tension > 0
+  const Vector* area = nullptr;   // all rows: the same weight, for the tangents; null: all alike
+  double velocity_weight = 0;     // gamma * dt [s]: a force p at the end of the step put -velocity_weight * M^-1 B^T p into the velocity
+  double step = 0;                // s: of the step just solved
   // all rows: what prescribed motions alone make of the openings' rates at the end of the step [m/s, m/s2]; null: nothing
   const Vector* moved_velocity = nullptr;
   const Vector* moved_acceleration = nullptr;
