@@ -109,23 +109,113 @@ std::optional<Box> box_within(const PlacedCell& cell, std::span<const HalfSpace>
   return box;
 }
 
-ClippedCell filled_box(const PlacedCell& cell, const Box& box) {
-  ClippedCell made;
-  made.piece = cell.type();
-  const int d = info(cell.type()).dimension;
-  if (box.is_empty(d)) return made;
+/// Which corner of a line2, quad4 or hex8 lies across it in each direction.
+constexpr std::array<std::size_t, 3> turn{1, 3, 4};  // bits that change
+
+/// A box in a cell, and the inclined plane that ends it.
+struct Column {
+  Box box;
+  const HalfSpace* end = nullptr;         // null: none
+  int axis = 0;                           // the end lies across this one alone
+  std::array<Vec3, max_corners> corners;  // local coordinates
+};
+
+/// Moves the corners of a box to an inclined plane along the direction in which it crosses all edges; false: there is none.
+bool cut_box(const PlacedCell& cell, double tolerance, Column& column) {
+  const std::span<const std::array<double, 3>> nodes = cell_nodes(cell.type());
+  std::array<double, max_corners> distance{};
+  for (std::size_t a = 0; a < nodes.size(); ++a) {
+    distance[a] = column.end->distance(cell.place(column.corners[a]));
+    if (std::abs(distance[a]) <= tolerance) return false;
+  }
+  for (int k = 0; k < info(cell.type()).dimension; ++k) {
+    const bool from_is_in = distance[0] < 0;  // the first corner is at the lower end of all axes
+    bool across = true;
+    for (std::size_t a = 0; a < nodes.size(); ++a) across = across && (distance[a] < 0) == ((nodes[a][at(k)] < 0) == from_is_in);
+    if (!across) continue;
+    column.axis = k;
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      const std::size_t b = a ^ turn[at(k)];
+      if (distance[a] > 0)
+        column.corners[a][k] += distance[a] / (distance[a] - distance[b]) * (column.corners[b][k] - column.corners[a][k]);
+    }
+    return true;
+  }
+  return false;
+}
+
+/// None: the part is not a box with at most one inclined end.
+std::optional<Column> column_within(const PlacedCell& cell, std::span<const HalfSpace> within, double tolerance) {
+  if (!is_box(cell.type())) return std::nullopt;
+  Column column;
+  std::array<HalfSpace, 6> level;
+  std::size_t levels = 0;
+  for (const HalfSpace& space : within) {
+    if (side_of_cell(space, cell.corners(), tolerance) == PlaneSide::inside) continue;
+    if (cell.parallel() && axis_across(cell, space) >= 0 && levels < level.size())
+      level[levels++] = space;
+    else if (column.end == nullptr)
+      column.end = &space;
+    else
+      return std::nullopt;
+  }
+  if (const std::optional<Box> box = box_within(cell, std::span(level).first(levels), tolerance)) column.box = *box;
+  const std::span<const std::array<double, 3>> nodes = cell_nodes(cell.type());
+  for (std::size_t a = 0; a < nodes.size(); ++a)
+    for (int k = 0; k < 3; ++k) {
+      const double side = nodes[a][at(k)];
+      column.corners[a][k] = k >= info(cell.type()).dimension ? 0 : side < 0 ? column.box.from[at(k)] : column.box.to[at(k)];
+    }
+  if (column.box.is_empty(info(cell.type()).dimension)) column.end = nullptr;
+  if (column.end != nullptr && !cut_box(cell, tolerance, column)) return std::nullopt;
+  return column;
+}
+
+/// Gauss points of the reference cell for a box with an inclined end along an axis: products of two shape functions are quadratic in each
+/// direction; with the length along the axis, linear in the others, they have degree 5 there.
+const CellRule& column_rule(int dimension, int axis) {
+  static const auto all = [] {
+    std::array<std::array<CellRule, 3>, 4> rules;
+    const CellRule three = cell_rule(Cell::line2, 5), two = cell_rule(Cell::line2, 3);
+    for (int d = 2; d <= 3; ++d)
+      for (int k = 0; k < d; ++k) {
+        const auto along = [&](int m) -> const CellRule& { return m == k ? two : three; };
+        CellRule& made = rules[at(d)][at(k)];
+        for (std::size_t i = 0; i < along(0).weight.size(); ++i)
+          for (std::size_t j = 0; j < along(1).weight.size(); ++j)
+            for (std::size_t l = 0; l < (d == 3 ? along(2).weight.size() : 1); ++l) {
+              made.point.emplace_back(along(0).point[i].x(), along(1).point[j].x(), d == 3 ? along(2).point[l].x() : 0);
+              made.weight.push_back(along(0).weight[i] * along(1).weight[j] * (d == 3 ? along(2).weight[l] : 1));
+            }
+      }
+    return rules;
+  }();
+  return all[at(dimension)][at(axis)];
+}
+
+/// Of a cell with parallel sides.
+CellRule rule_of_column(const PlacedCell& cell, const Column& column) {
+  const int d = info(cell.type()).dimension, axis = column.axis;
+  if (column.box.is_empty(d)) return {};
+  CellRule made = column.end == nullptr ? box_rule(cell.type()) : column_rule(d, axis);
   Vec3 middle = Vec3::Zero(), half = Vec3::Zero();
   double share = 1;
   for (int k = 0; k < d; ++k) {
-    middle[k] = (box.from[at(k)] + box.to[at(k)]) / 2, half[k] = (box.to[at(k)] - box.from[at(k)]) / 2;
+    middle[k] = (column.box.from[at(k)] + column.box.to[at(k)]) / 2, half[k] = (column.box.to[at(k)] - column.box.from[at(k)]) / 2;
     share *= half[k];
   }
-  const auto place = [&](const Vec3& local) { return Vec3(middle + half.cwiseProduct(local)); };
-  made.rule = box_rule(cell.type());
-  for (Vec3& point : made.rule.point) point = place(point);
-  for (double& weight : made.rule.weight) weight *= share;
-  made.corners.reserve(cell.corners().size());
-  for (const auto& node : cell_nodes(cell.type())) made.corners.push_back(cell.place(place({node[0], node[1], node[2]})));
+  const double slope = column.end == nullptr ? 0 : column.end->normal.dot(cell.tangent(axis));
+  for (std::size_t p = 0; p < made.point.size(); ++p) {
+    const double along = made.point[p][axis];
+    made.point[p] = middle + half.cwiseProduct(made.point[p]);
+    made.weight[p] *= share;
+    if (column.end == nullptr) continue;
+    made.point[p][axis] = middle[axis];
+    const double end = middle[axis] - column.end->distance(cell.place(made.point[p])) / slope;
+    const double far = slope > 0 ? middle[axis] - half[axis] : middle[axis] + half[axis];
+    made.point[p][axis] = (end + far) / 2 + std::abs(end - far) / 2 * along;
+    made.weight[p] *= std::abs(end - far) / (2 * half[axis]);
+  }
   return made;
 }
 
@@ -214,13 +304,26 @@ std::span<const Simplex> simplices_within(const PlacedCell& cell, std::span<cons
   return left;
 }
 
-ClippedCell filled_simplices(const PlacedCell& cell, std::span<const HalfSpace> within, double tolerance) {
-  const std::span<const Simplex> left = simplices_within(cell, within, tolerance);
+/// The points of all simplices in a cell, exact for what rule_within states.
+CellRule rule_in_simplices(const PlacedCell& cell, std::span<const Simplex> simplices) {
   const int d = info(cell.type()).dimension;
-  ClippedCell made;
-  made.piece = simplex_cell(d);
-  made.corners.reserve(left.size() * (at(d) + 1));
-  for (const Simplex& simplex : left) made.corners.insert(made.corners.end(), simplex.begin(), simplex.begin() + d + 1);
+  const SimplexRule& rule = simplex_rule(cell);
+  const std::size_t points = rule.weight.size();
+  CellRule made;
+  made.point.reserve(simplices.size() * points);
+  made.weight.reserve(simplices.size() * points);
+  std::array<Vec3, most_points> place, local;
+  std::array<double, most_points> whole;
+  for (const Simplex& simplex : simplices) {
+    const double size = measure(simplex, d);
+    for (std::size_t p = 0; p < points; ++p) {
+      place[p] = rule.share[p][0] * simplex[0];
+      for (std::size_t k = 1; k <= at(d); ++k) place[p] += rule.share[p][k] * simplex[k];
+    }
+    cell.find(std::span(place).first(points), local, whole);
+    made.point.insert(made.point.end(), local.begin(), local.begin() + static_cast<std::ptrdiff_t>(points));
+    for (std::size_t p = 0; p < points; ++p) made.weight.push_back(rule.weight[p] * size / whole[p]);
+  }
   return made;
 }
 
@@ -236,34 +339,27 @@ PlaneSide side_of_cell(const HalfSpace& space, std::span<const Vec3> corners, do
   return !above ? PlaneSide::inside : below ? PlaneSide::both : PlaneSide::outside;
 }
 
-ClippedCell clip_cell(const PlacedCell& cell, std::span<const HalfSpace> within, double tolerance) {
-  if (const std::optional<Box> box = box_within(cell, within, tolerance)) return filled_box(cell, *box);
-  return filled_simplices(cell, within, tolerance);
+CellRule rule_within(const PlacedCell& cell, std::span<const HalfSpace> within, double tolerance) {
+  if (cell.parallel())
+    if (const std::optional<Column> column = column_within(cell, within, tolerance)) return rule_of_column(cell, *column);
+  return rule_in_simplices(cell, simplices_within(cell, within, tolerance));
 }
 
-CellRule rule_in_simplices(const PlacedCell& cell, std::span<const Vec3> corners) {
+void draw_within(const PlacedCell& cell, std::span<const HalfSpace> within, double tolerance, DrawnPart& made) {
   const int d = info(cell.type()).dimension;
-  const std::size_t count = at(d) + 1;
-  const SimplexRule& rule = simplex_rule(cell);
-  const std::size_t points = rule.weight.size();
-  CellRule made;
-  made.point.reserve(corners.size() / count * points);
-  made.weight.reserve(corners.size() / count * points);
-  std::array<Vec3, most_points> place, local;
-  std::array<double, most_points> whole;
-  Simplex simplex;
-  for (std::size_t first = 0; first < corners.size(); first += count) {
-    std::ranges::copy(corners.subspan(first, count), simplex.begin());
-    const double size = measure(simplex, d);
-    for (std::size_t p = 0; p < points; ++p) {
-      place[p] = rule.share[p][0] * simplex[0];
-      for (std::size_t k = 1; k < count; ++k) place[p] += rule.share[p][k] * simplex[k];
+  made.corners.clear(), made.local.clear();
+  if (const std::optional<Column> column = column_within(cell, within, tolerance)) {
+    made.piece = cell.type();
+    if (column->box.is_empty(d)) return;
+    for (const Vec3& corner : std::span(column->corners).first(cell.corners().size())) {
+      made.local.push_back(corner);
+      made.corners.push_back(cell.place(corner));
     }
-    cell.find(std::span(place).first(points), local, whole);
-    made.point.insert(made.point.end(), local.begin(), local.begin() + static_cast<std::ptrdiff_t>(points));
-    for (std::size_t p = 0; p < points; ++p) made.weight.push_back(rule.weight[p] * size / whole[p]);
+    return;
   }
-  return made;
+  made.piece = simplex_cell(d);
+  for (const Simplex& simplex : simplices_within(cell, within, tolerance))
+    made.corners.insert(made.corners.end(), simplex.begin(), simplex.begin() + d + 1);
 }
 
 bool is_clipped_away(const PlacedCell& cell, std::span<const HalfSpace> within, double tolerance) {

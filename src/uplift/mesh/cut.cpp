@@ -17,15 +17,6 @@ struct MadeCells {
   CellId lower = no_cell, upper = no_cell;
 };
 
-bool is_cut(const Halves& halves) {
-  return (halves.lower && !halves.lower_whole) || (halves.upper && !halves.upper_whole);
-}
-
-std::optional<PlacedCell> placed_if_cut(const CellBefore& cell, const Halves& halves) {
-  if (!is_cut(halves)) return std::nullopt;
-  return PlacedCell(cell.cell, cell.corners());
-}
-
 /// One plane through a mesh: the second part, which makes the doubles and the parts.
 class OneCut {
  public:
@@ -43,12 +34,11 @@ class OneCut {
   bool keeps(int node, bool upper) const { return double_[at(node)] < 0 || upper == (sign(node) > 0 && !beyond_[at(node)]); }
   int lower_node(int node) const { return keeps(node, false) ? node : double_[at(node)]; }
   int upper_node(int node) const { return keeps(node, true) ? node : double_[at(node)]; }
-  MadeCells write_cell(CellId id, const Halves& halves, const CellBefore& before, const PlacedCell* placed);
+  MadeCells write_cell(CellId id, const Halves& halves, double tolerance);
   void rename(CellId id, bool upper);
   MadeCells made_small(CellId id) const;
   void add_own_doubles(const MadeCells& made);
   CellId add_copy(CellId id);
-  void set_part(CellId id, const PlacedCell& before, std::span<const HalfSpace> within, double tolerance);
   void write_small(CellId id);
   void write_groups();
   void add_face(std::vector<CutFace>& faces, CutFace face, const CellBefore& of, const PlacedCell* placed, bool whole) const;
@@ -60,6 +50,7 @@ class OneCut {
   const CutPlane& plane_;
   const Where& where_;
   const CutFilling filling_;
+  const int limits_;                   // of the lower side in Mesh::limits; those of the outlines follow
   const Sides& sides_;                 // of the cells of the groups `through` in the extent
   const Sides sides_beyond_;           // of those beyond it
   const std::vector<Halves>& halves_;  // of each of sides_.cells(), as made_
@@ -148,9 +139,15 @@ OneCut::OneCut(CutWork& work, const CutPlane& plane, const Where& where)
       plane_(plane),
       where_(where),
       filling_(work, plane, where),
+      limits_(static_cast<int>(work.mesh.limits.size())),
       sides_(filling_.sides()),
       sides_beyond_(mesh_, filling_.beyond()),
       halves_(filling_.halves()) {
+  mesh_.limits.push_back({plane.below});
+  for (int k = 0; k < static_cast<int>(plane.outlines.size()); ++k) {
+    const std::span<const HalfSpace> above = filling_.above(k);
+    mesh_.limits.emplace_back(above.begin(), above.end());
+  }
   find_doubles();
   find_neighbours();
 }
@@ -186,13 +183,7 @@ void OneCut::add_own_doubles(const MadeCells& made) {
   }
 }
 
-void OneCut::set_part(CellId id, const PlacedCell& before, std::span<const HalfSpace> within, double tolerance) {
-  ClippedCell clipped = clip_cell(before, within, tolerance);
-  mesh_.parts[id] = {clipped.piece, std::move(clipped.rule), std::move(clipped.corners), {}};
-}
-
-/// `placed`: the same cell as `before`, null where nothing is cut.
-MadeCells OneCut::write_cell(CellId id, const Halves& halves, const CellBefore& before, const PlacedCell* placed) {
+MadeCells OneCut::write_cell(CellId id, const Halves& halves, double tolerance) {
   MadeCells made;
   if (halves.lower) made.lower = id;
   if (halves.upper) made.upper = halves.lower ? add_copy(id) : id;
@@ -201,8 +192,8 @@ MadeCells OneCut::write_cell(CellId id, const Halves& halves, const CellBefore& 
     mesh_.parts.erase(id);
     return made;
   }
-  if (halves.lower && !halves.lower_whole) set_part(made.lower, *placed, {&plane_.below, 1}, before.tolerance);
-  if (halves.upper && !halves.upper_whole) set_part(made.upper, *placed, filling_.above(halves.outline), before.tolerance);
+  if (halves.lower && !halves.lower_whole) mesh_.parts[made.lower] = {.limits = limits_, .tolerance = tolerance};
+  if (halves.upper && !halves.upper_whole) mesh_.parts[made.upper] = {.limits = limits_ + 1 + halves.outline, .tolerance = tolerance};
   if (halves.upper) rename(made.upper, true);
   if (halves.lower) rename(made.lower, false);
   return made;
@@ -226,8 +217,7 @@ void OneCut::write_small(CellId id) {
   Halves halves{lower && (below || !above), upper && (above || (!below && !lower)), !above, !below};
   const CellBefore before = filling_.before(id);
   if (above && halves.upper) filling_.keep_within(before, halves);
-  const std::optional<PlacedCell> placed = placed_if_cut(before, halves);
-  made_small_.emplace_back(id, write_cell(id, halves, before, placed ? &*placed : nullptr));
+  made_small_.emplace_back(id, write_cell(id, halves, before.tolerance));
 }
 
 /// What was made of a cell of lower dimension; itself when nothing was.
@@ -351,13 +341,13 @@ std::vector<CutFace> OneCut::faces() {
   for (int k = 0; k < static_cast<int>(halves_.size()); ++k) {
     const Halves& halves = halves_[at(k)];
     const CellBefore cell = filling_.before(sides_.cells()[at(k)]);
-    const std::optional<PlacedCell> placed = placed_if_cut(cell, halves);
-    made_.push_back(write_cell(sides_.cells()[at(k)], halves, cell, placed ? &*placed : nullptr));
+    made_.push_back(write_cell(sides_.cells()[at(k)], halves, cell.tolerance));
     if (!halves.lower || halves.lower_whole) continue;
     std::vector<Vec3> corners = section(cell.cell, cell.corners(), plane_.below, cell.tolerance);
-    if (halves.upper)
-      add(k, k, std::move(corners), cell, &*placed, false);
-    else
+    if (halves.upper) {
+      const PlacedCell placed(cell.cell, cell.corners());
+      add(k, k, std::move(corners), cell, &placed, false);
+    } else
       add_beside(made_[at(k)].lower, std::move(corners), nullptr, cell.tolerance);
   }
   if (plane_.own_doubles)

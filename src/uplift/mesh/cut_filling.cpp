@@ -127,8 +127,12 @@ void CutFilling::find_signs() {
 
 /// What an earlier plane has left of a cell lies on one side of this one, and within its outline or outside of it.
 Halves CutFilling::halves_of_part(CellId id) const {
-  const std::span<const Vec3> corners = mesh_.part(id)->corners;
-  const double tolerance = before(id).tolerance;
+  const CellBefore cell = before(id);
+  const CellPart& part = *mesh_.part(id);
+  DrawnPart drawn;
+  draw_within({cell.cell, cell.corners()}, mesh_.limits[at(part.limits)], part.tolerance, drawn);
+  const std::span<const Vec3> corners = drawn.corners;
+  const double tolerance = cell.tolerance;
   const PlaneSide side = side_of_cell(plane_.below, corners, tolerance);
   Halves halves{side == PlaneSide::inside, false};
   bool cut = side == PlaneSide::both;

@@ -7,8 +7,8 @@
 
 #include "uplift/base/error.h"
 #include "uplift/math/linalg.h"
-#include "uplift/mesh/cell_quadrature.h"
 #include "uplift/mesh/cells.h"
+#include "uplift/mesh/half_space.h"
 
 namespace uplift {
 
@@ -37,12 +37,13 @@ struct Group {
   std::vector<int> nodes;     // of a group of nodes, ascending
 };
 
-/// What a plane leaves of a cell that it cuts (mesh/cut.h): the cell's nodes and shape functions, integrated over one side of the plane.
+/// What a plane leaves of a cell that it cuts (mesh/cut.h): the cell's nodes and shape functions, integrated over one side of the plane
+/// (rule_of_part, mesh/parts.h).
 struct CellPart {
-  Cell piece = Cell::point;        // it is divided into cells of this type
-  CellRule rule;                   // of a part that is one box; empty: see rule_of_part (mesh/parts.h)
-  std::vector<Vec3> corners = {};  // m; of the pieces, piece after piece
-  std::vector<int> nodes = {};     // of the pieces, for drawings: nodes of the mesh, also followers
+  int limits = 0;               // Mesh::limits that hold the part
+  Cell piece = Cell::point;     // it is drawn as cells of this type
+  double tolerance = 0;         // m: corners of the cell so near a limit count as on it
+  std::vector<int> nodes = {};  // of the pieces: nodes of the mesh, also followers
 };
 
 /// The parts of the cells of a mesh. A part has a number, which it keeps while the numbers of cells change.
@@ -77,9 +78,10 @@ struct Mesh {
   std::vector<Vec3> nodes;        // m
   std::vector<CellBlock> blocks;  // at most one per type
   std::map<std::string, Group> groups;
-  CellParts parts = {};                   // of cells that are filled in part; all others are whole
-  std::vector<Follower> followers = {};   // used by the pieces of parts
-  std::vector<std::string> emptied = {};  // groups of which nothing is left, for messages
+  CellParts parts = {};                             // of cells that are filled in part; all others are whole
+  std::vector<std::vector<HalfSpace>> limits = {};  // of parts
+  std::vector<Follower> followers = {};             // used by the pieces of parts
+  std::vector<std::string> emptied = {};            // groups of which nothing is left, for messages
   std::vector<int> places = {};     // of the first nodes, ascending: where each stood before some were removed; empty: where it stands
   CellBlock& block(Cell cell);      // made when it is not there (references to other blocks end then)
   int find_block(Cell cell) const;  // -1 when absent

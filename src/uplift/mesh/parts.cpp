@@ -86,28 +86,41 @@ bool is_inside_out(int dimension, Cell piece, std::span<const Vec3> x) {
   return piece == Cell::tet4 && (x[3] - x[0]).dot(cross(x[1] - x[0], x[2] - x[0])) < 0;
 }
 
+/// A cell at its place; `places` gets its corners.
+PlacedCell placed(const Mesh& mesh, CellId id, std::array<Vec3, max_corners>& places) {
+  const std::span<const int> nodes = mesh.cell(id);
+  for (std::size_t a = 0; a < nodes.size(); ++a) places[a] = mesh.nodes[at(nodes[a])];
+  return {mesh.type(id), std::span(places).first(nodes.size())};
+}
+
 }  // namespace
 
 CellRule rule_of_part(const Mesh& mesh, CellId id) {
   const CellPart& part = *mesh.part(id);
-  if (!part.rule.weight.empty() || part.corners.empty()) return part.rule;
   std::array<Vec3, max_corners> places;
-  const std::span<const int> nodes = mesh.cell(id);
-  for (std::size_t a = 0; a < nodes.size(); ++a) places[a] = mesh.nodes[at(nodes[a])];
-  return rule_in_simplices({mesh.type(id), std::span(places).first(nodes.size())}, part.corners);
+  return rule_within(placed(mesh, id, places), mesh.limits[at(part.limits)], part.tolerance);
 }
 
 void add_pieces(Mesh& mesh) {
   const std::vector<CellId> cells = mesh.parts.cells();
   Followers followers(mesh, cells.size());
-  std::vector<std::pair<Vec3, int>> known;  // pieces share their corners
+  std::vector<std::pair<Vec3, int>> known;  // simplices share their corners
   std::array<Vec3, max_corners> places;
+  DrawnPart drawn;
   std::size_t done = 0;
   for (const CellId id : cells) {
     if (done++ == cells.size() / 16 && done > 1000) followers.expect(done - 1, cells.size());
     const std::span<const int> nodes = mesh.cell(id);
-    for (std::size_t a = 0; a < nodes.size(); ++a) places[a] = mesh.nodes[at(nodes[a])];
-    const PlacedCell cell(mesh.type(id), std::span(places).first(nodes.size()));
+    const PlacedCell cell = placed(mesh, id, places);
+    CellPart& part = mesh.parts[id];
+    draw_within(cell, mesh.limits[at(part.limits)], part.tolerance, drawn);
+    part.piece = drawn.piece;
+    part.nodes.reserve(drawn.corners.size());
+    if (!drawn.local.empty()) {
+      for (std::size_t k = 0; k < drawn.local.size(); ++k)
+        part.nodes.push_back(followers.node_at(nodes, cell.shares(drawn.local[k]), drawn.corners[k]));
+      continue;
+    }
     known.clear();
     for (std::size_t a = 0; a < nodes.size(); ++a) known.emplace_back(places[a], nodes[a]);
     const auto node_at = [&](const Vec3& place) {
@@ -118,10 +131,8 @@ void add_pieces(Mesh& mesh) {
       const int node = followers.node_at(nodes, cell.shares(cell.local(place)), place);
       return known.emplace_back(place, node).second;
     };
-    CellPart& part = mesh.parts[id];
-    const std::span<const Vec3> all = part.corners;
+    const std::span<const Vec3> all = drawn.corners;
     const auto n = at(info(part.piece).nodes);
-    part.nodes.reserve(all.size());
     for (std::size_t first = 0; first < all.size(); first += n) {
       const std::span<const Vec3> piece = all.subspan(first, n);
       const bool turned = is_inside_out(mesh.dimension, part.piece, piece);

@@ -2,13 +2,14 @@
 #include <span>
 #include <vector>
 
+#include "uplift/mesh/cell_quadrature.h"
 #include "uplift/mesh/mesh.h"
 
 // Cells that are filled in part, as they are drawn and as users see them.
 namespace uplift {
 
 /// The rule over the part of a cell that has one, in the cell's local coordinates: the weights add up to the part's share of the reference
-/// cell. Made anew: that of a part in simplices has up to hundreds of points, ten times the memory of their corners.
+/// cell. Made anew: that of a part in simplices has up to hundreds of points.
 CellRule rule_of_part(const Mesh& mesh, CellId id);
 
 /// Gives the parts of a mesh the nodes of their pieces, with followers at the corners that are no nodes.
