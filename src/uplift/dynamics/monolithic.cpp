@@ -289,7 +289,7 @@ class Monolithic final : public StepSolver {
     std::vector<double> area;
     each_point([&](const Block& block, int i, std::size_t) {
       const int row = block.first + block.batch.normal() + i;
-      if (block.cone->friction() > 0 || solution_.opening[row] > 1e-11) return;
+      if (block.cone->friction() > 0 || solution_.opening[row] > 10 * no_gap * problem_.model->size) return;
       touching.push_back(row);
       area.push_back(block.area[static_cast<std::size_t>(i)]);
     });

@@ -150,6 +150,7 @@ class Stepper {
   void soften(const Level& level, Vector& acceleration);
   void balance_damping(const Level& level, Impact& data, bool with_friction);
   void damp_impact(const Level& level, const Vector& velocity, Vector& acceleration);
+  bool is_round_off(const Vector& change, const Vector& velocity);
   void begin_kick(const Level& level);
   void undo_kick();
   void set_kick(const Ledger& from);

@@ -166,13 +166,21 @@ void Stepper::soften(const Level& level, Vector& acceleration) {
   level.impact_factor->solve(product_, acceleration, impact_work_);
 }
 
+/// Whether the kinetic energy of a change of velocity is none beside that of a velocity: translations and rotations have no norm in common.
+bool Stepper::is_round_off(const Vector& change, const Vector& velocity) {
+  constexpr double round_off = 1e-12;
+  bulk_.mass.multiply(change, work_);
+  const double changed = change.dot(work_);
+  bulk_.mass.multiply(velocity, work_);
+  return changed <= round_off * round_off * velocity.dot(work_);
+}
+
 /// The impulse by which an impact changes the damping force over half a step, w D (v' - v), acts at once. The state after it has the
 /// acceleration and the contact force with all of D v' that the step resolves, (M + w D) (a'' - a') = -D (v' - v) - B^T (p'' - p'); the
 /// next step begins with a' and p', which contain D v, and so takes the impulse back.
 void Stepper::balance_damping(const Level& level, Impact& data, bool with_friction) {
-  constexpr double round_off = 1e-12;
   product_ = next_.velocity - velocity_free_;
-  if (!closing_ && product_.squaredNorm() <= round_off * round_off * next_.velocity.squaredNorm()) return;
+  if (!closing_ && is_round_off(product_, next_.velocity)) return;
   Kick& kick = kick_next_;
   kick.step = level.step;
   kick.acceleration = next_.acceleration;
@@ -224,9 +232,8 @@ void Stepper::undo_kick() {
 void Stepper::damp_impact(const Level& level, const Vector& velocity, Vector& acceleration) {
   if (bulk_.damping.zero() || level.impact != nullptr) return;
   const BulkFactor* factor = level.solver->factor() != nullptr ? level.solver->factor() : level.impact_factor.get();
-  constexpr double round_off = 1e-12;
   product_ = velocity - velocity_free_;
-  if (product_.squaredNorm() <= round_off * round_off * velocity.squaredNorm()) return;
+  if (is_round_off(product_, velocity)) return;
   bulk_.damping.multiply(product_, work_);
   factor->solve(work_, work2_, impact_work_);
   acceleration -= level.mass * work2_;

@@ -11,7 +11,8 @@
 #include "unit/case/cut_support.h"
 
 // Units that are powers of two of metre, kilogram and second change no digit of the input: a result that changes with them compares
-// something with a length, a force or a time of the program's own.
+// something with a length, a force or a time of the program's own, or adds what has other units, as translations and rotations. With other
+// units, and for a model of another size with the same gravity, the input is rounded anew.
 namespace uplift::unit_symmetry_test {
 namespace {
 
@@ -80,11 +81,23 @@ std::string structure(Structure kind, const Units& u, const std::string& law) {
   return {};
 }
 
-RunResult shaken(Structure kind, const Units& u, const std::string& law, const std::string& method, const std::string& impact) {
+/// What is computed, in any units.
+struct Shaking {
+  Structure kind;
+  const char* method;
+  const char* impact;   // empty: that of the law
+  bool damped = false;  // by Rayleigh's damping and HHT-alpha; else undamped, by the trapezoidal rule
+  bool lifts = true;
+};
+
+RunResult shaken(const Shaking& of, const Units& u, const std::string& law) {
+  const Structure kind = of.kind;
+  const std::string impact = of.impact;
   const bool space = kind == Structure::block_in_space;
   std::string text = "title = \"in other units\"\n";
   if (!impact.empty()) text += "impact = \"" + impact + "\"\n";
-  text += structure(kind, u, law) + "[method]\ntype = \"" + method + "\"\n";
+  text += structure(kind, u, law) + "[method]\ntype = \"" + of.method + "\"\n";
+  if (of.damped) text += fmt::format("[damping]\nalpha = {}\nbeta = {}\n", 0.5 / u.time, 1e-3 * u.time);
   text += fmt::format("[[function]]\nname = \"pulse\"\nshape = {{ type = \"half_sine\", duration = {} }}\n", 0.4 * u.time);
   text += fmt::format("[[ground_acceleration]]\nfunction = \"pulse\"\ndirection = {}\namplitude = {}\n", space ? "[0.8, 0.6, 0]" : "[1, 0]",
                       6 * u.of(1, 0, -2));
@@ -92,16 +105,19 @@ RunResult shaken(Structure kind, const Units& u, const std::string& law, const s
                       space ? "[0, 0, 1]" : "[0, 1]", u.of(1, 0, -2));
   text +=
       fmt::format("[[stage]]\ntype = \"static\"\n[[stage]]\ntype = \"dynamic\"\nduration = {}\nstep = {}\n", 0.8 * u.time, 2e-3 * u.time);
+  if (of.damped) text += "scheme = { type = \"hht\", alpha = -0.1 }\n";
   const Case read = read_on(text, {});
   BuiltCase built = build(read, RunSpec{});
   return run(built.model, built.plan, built.behaviours);
 }
 
+const std::vector<Units> powers_of_two{{0x1p10, 1, 1}, {0x1p-10, 1, 1}, {1, 0x1p10, 1}, {1, 1, 0x1p-8}};
+
 /// Histories in other units, each column up to round-off of the largest value of its kind.
-void expect_same(Structure kind, const std::string& law, const std::function<std::string(const Units&)>& law_text,
-                 const std::string& method, const std::string& impact) {
+void expect_same(const Shaking& of, const std::string& law, const std::function<std::string(const Units&)>& law_text,
+                 const std::vector<Units>& all = powers_of_two) {
   constexpr double round_off = 1e-9;
-  const RunResult metres = shaken(kind, {}, law_text({}), method, impact);
+  const RunResult metres = shaken(of, {}, law_text({}));
   const Units two{0x1p1, 0x1p-3, 0x1p7};  // tells kinds of quantities apart
   std::map<double, double> largest;       // of a kind of quantity
   double opening = 0;                     // m
@@ -113,11 +129,14 @@ void expect_same(Structure kind, const std::string& law, const std::function<std
       if (name.ends_with(".max_opening")) opening = std::max(opening, value);
     }
   }
-  EXPECT_GT(opening, 1e-3) << law << " does not lift off";
-  for (const Units& units : {Units{0x1p10, 1, 1}, Units{0x1p-10, 1, 1}, Units{1, 0x1p10, 1}, Units{1, 1, 0x1p-8}}) {
-    const std::string what = fmt::format("{}, {}, {}, structure {}, units {} {} {}", law, method, impact, static_cast<int>(kind),
+  EXPECT_EQ(opening > 1e-3, of.lifts) << law;
+  if (!of.lifts)  // what turns is but round-off: beside a rotation and its rate that move the corners as far and as fast as the block
+    for (const char* rotation : {"top.rz", "top.vrz"})
+      largest[two.of_column(rotation)] = largest[two.of_column(rotation[4] == 'v' ? "top.vx" : "top.ux")];
+  for (const Units& units : all) {
+    const std::string what = fmt::format("{}, {}, {}, structure {}, units {} {} {}", law, of.method, of.impact, static_cast<int>(of.kind),
                                          units.length, units.mass, units.time);
-    const RunResult other = shaken(kind, units, law_text(units), method, impact);
+    const RunResult other = shaken(of, units, law_text(units));
     ASSERT_EQ(metres.table.front().size(), other.table.front().size()) << what << ": " << other.reason;
     for (std::size_t k = 0; k < metres.columns.size(); ++k) {
       const std::string& name = metres.columns[k].name;
@@ -132,10 +151,31 @@ void expect_same(Structure kind, const std::string& law, const std::function<std
 
 constexpr Structure structures[] = {Structure::block, Structure::block_in_space, Structure::tower};
 
+std::function<std::string(const Units&)> coulomb(double friction) {
+  return [friction](const Units&) { return fmt::format("{{ type = \"coulomb\", friction = {} }}", friction); };
+}
+
 TEST(UnitSymmetry, Constraints) {
-  const auto coulomb = [](const Units&) { return std::string("{ type = \"coulomb\", friction = 0.5 }"); };
   for (const Structure kind : structures)
-    for (const char* impact : {"project_hold", "propagate"}) expect_same(kind, "coulomb", coulomb, "lagrange", impact);
+    for (const char* method : {"lagrange", "augmented_lagrangian"})
+      for (const char* impact : {"project_hold", "propagate"}) expect_same({kind, method, impact}, "coulomb", coulomb(0.5));
+}
+
+/// What an impact changes in the velocity is told from round-off where it also changes the damping force.
+TEST(UnitSymmetry, DampedConstraints) {
+  for (const char* method : {"lagrange", "augmented_lagrangian"}) {
+    expect_same({Structure::block, method, "project_hold", true}, "coulomb", coulomb(0.5));
+    expect_same({Structure::block_in_space, method, "project_hold", true, false}, "coulomb", coulomb(0.2));
+  }
+}
+
+/// Millimetres and tonnes; a block a hundred times as large, in ten times the time, with the same gravity.
+TEST(UnitSymmetry, MillimetresAndLargerBlocks) {
+  const std::vector<Units> others{{1e3, 1e-3, 1}, {100, 1e6, 10}};
+  for (const Structure kind : {Structure::block, Structure::block_in_space})
+    for (const char* method : {"lagrange", "augmented_lagrangian"})
+      for (const bool damped : {false, true})
+        for (const double friction : {0.5, 0.9}) expect_same({kind, method, "project_hold", damped}, "coulomb", coulomb(friction), others);
 }
 
 TEST(UnitSymmetry, TractionLaws) {
@@ -151,8 +191,8 @@ TEST(UnitSymmetry, TractionLaws) {
                        4e8 * u.of(-2, 1, -2));
   };
   for (const Structure kind : structures) {
-    expect_same(kind, "springs", springs, "newton", "");
-    for (const char* law : {"sdm", "exponential", "bilinear"}) expect_same(kind, law, with_strength(law), "newton", "");
+    expect_same({kind, "newton", ""}, "springs", springs);
+    for (const char* law : {"sdm", "exponential", "bilinear"}) expect_same({kind, "newton", ""}, law, with_strength(law));
   }
 }
 
