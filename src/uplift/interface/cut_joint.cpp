@@ -129,8 +129,14 @@ void add_level_quadrilateral(const CutFace& face, Points& points, Facets& facets
     facets.pieces.push_back({{p[a], p[b], p[c]}, triangle_area(x[a], x[b], x[c]) / 2});
 }
 
-/// A face of cells of the second degree, whose functions are quadratic in both directions: Simpson's rule in each.
-void add_quadratic_face(const CutFace& face, Points& points, Facets& facets) {
+bool is_parallelogram(const std::vector<Vec3>& x) {
+  constexpr double round_off = 1e-9;
+  return x.size() == 4 && (x[0] - x[1] + x[2] - x[3]).norm() <= round_off * (x[2] - x[0]).norm();
+}
+
+/// A face of cells of the second degree, or a parallelogram across a hexahedron or a wedge: the shape functions are at most cubic in both
+/// directions. Simpson's rule in each.
+void add_simpson_face(const CutFace& face, Points& points, Facets& facets) {
   const std::vector<Vec3>& x = face.corners;
   constexpr std::array<std::array<int, 2>, 8> ring{{{-1, -1}, {0, -1}, {1, -1}, {1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}}};
   const auto add = [&](int r, int s) {
@@ -274,8 +280,9 @@ CutJoints cut_joints(const Mesh& mesh, const std::vector<CutFace>& faces, const 
       add_cut_line(face, thickness, points);
     else if (face.level && face.corners.size() == 4 && info(mesh.type(face.upper)).corners > 4)
       add_level_quadrilateral(face, points, made.facets);
-    else if (face.corners.size() == 4 && info(mesh.type(face.upper)).linear != mesh.type(face.upper))
-      add_quadratic_face(face, points, made.facets);
+    else if (face.corners.size() == 4 &&
+             (info(mesh.type(face.upper)).linear != mesh.type(face.upper) || (!face.level && is_parallelogram(face.corners))))
+      add_simpson_face(face, points, made.facets);
     else
       add_triangles(face, points, made.facets);
   }
