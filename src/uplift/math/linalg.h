@@ -2,6 +2,8 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
+#include "uplift/math/product_kernels.h"
+
 // The file that names Eigen; beside it only math/dense.h and math/sparse_solvers.h do (factorisations, slow to compile).
 namespace uplift {
 

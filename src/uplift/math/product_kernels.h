@@ -1,0 +1,24 @@
+#pragma once
+#include <Eigen/Core>
+
+// The kernels of products of dense matrices and vectors, which are not inlined: compiled once, in product_kernels.cpp, and no longer in
+// each of the files that multiply (20 to 50 kB and up to some seconds of each).
+#define UPLIFT_PRODUCT_KERNELS(KIND)                                                                                                      \
+  KIND template struct gebp_kernel<double, double, Index, blas_data_mapper<double, Index, ColMajor, 0, 1>,                                \
+                                   gebp_traits<double, double>::mr, gebp_traits<double, double>::nr, false, false>;                       \
+  KIND template struct gemm_pack_lhs<double, Index, const_blas_data_mapper<double, Index, ColMajor>, gebp_traits<double, double>::mr,     \
+                                     gebp_traits<double, double>::LhsProgress, gebp_traits<double, double>::LhsPacket4Packing, ColMajor>; \
+  KIND template struct gemm_pack_lhs<double, Index, const_blas_data_mapper<double, Index, RowMajor>, gebp_traits<double, double>::mr,     \
+                                     gebp_traits<double, double>::LhsProgress, gebp_traits<double, double>::LhsPacket4Packing, RowMajor>; \
+  KIND template struct gemm_pack_rhs<double, Index, const_blas_data_mapper<double, Index, ColMajor>, gebp_traits<double, double>::nr,     \
+                                     ColMajor>;                                                                                           \
+  KIND template struct gemm_pack_rhs<double, Index, const_blas_data_mapper<double, Index, RowMajor>, gebp_traits<double, double>::nr,     \
+                                     RowMajor>;                                                                                           \
+  KIND template struct general_matrix_vector_product<Index, double, const_blas_data_mapper<double, Index, ColMajor>, ColMajor, false,     \
+                                                     double, const_blas_data_mapper<double, Index, RowMajor>, false, 0>;                  \
+  KIND template struct general_matrix_vector_product<Index, double, const_blas_data_mapper<double, Index, RowMajor>, RowMajor, false,     \
+                                                     double, const_blas_data_mapper<double, Index, ColMajor>, false, 0>;
+
+namespace Eigen::internal {
+UPLIFT_PRODUCT_KERNELS(extern)
+}
