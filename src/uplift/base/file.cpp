@@ -97,6 +97,18 @@ std::string nearest_file(const fs::path& path) {
   return nearest.empty() ? "" : (path.parent_path() / nearest).string();
 }
 
+void require_file(const fs::path& path, const Where& where, const std::string& key, const std::string& wanted) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (fs::is_regular_file(status)) return;
+  const auto refuse = [&](const std::string& found, const std::string& nearest = {}) {
+    throw InputError(where, key, wanted, found, nearest);
+  };
+  if (status.type() != fs::file_type::not_found) refuse(escaped(path.string()) + ", which is no regular file");
+  if (!fs::is_directory(folder_of(path), error)) refuse("no folder " + escaped(folder_of(path).string()));
+  refuse("no file " + escaped(path.string()), nearest_file(path));
+}
+
 std::string read_file(const fs::path& path, double most) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);

@@ -13,6 +13,9 @@ std::filesystem::path path_beside(const Where& where, const std::string& given);
 /// The file in the folder of a path whose name is the nearest to its name; empty when none is near enough to be a likely misspelling.
 std::string nearest_file(const std::filesystem::path& path);
 
+/// Throws InputError at the key that names the file unless it is a regular file: what is amiss with it, and the nearest name in its folder.
+void require_file(const std::filesystem::path& path, const Where& where, const std::string& key, const std::string& wanted = "a file");
+
 inline constexpr double usual_file_limit = 2000;  // MB
 
 /// The whole file, byte for byte. Throws InputError with the reason: when there is no such file, with the nearest name in its folder; when

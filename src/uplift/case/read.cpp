@@ -71,7 +71,7 @@ std::vector<std::string> input_files(const Case& read) {
   std::vector<std::string> files;
   const auto add = [&](const NameUsed& file) {
     const std::filesystem::path path = std::filesystem::path(read.file).parent_path() / file.name;
-    if (!std::filesystem::is_regular_file(path)) fail(file, "a file", escaped(path.string()));
+    require_file(path, file.where(), file.path());
     files.push_back(path.lexically_normal().string());
   };
   for (const CaseFunction& function : read.input->functions)

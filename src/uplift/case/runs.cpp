@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "uplift/base/file.h"
-#include "uplift/base/text.h"
 #include "uplift/case/build/names.h"
 #include "uplift/case/case.h"
 #include "uplift/case/schema/case_input.h"
@@ -29,7 +28,7 @@ std::string other_case_of(const Case& read, const NameUsed& file) {
   if (read.input->compare && !read.input->compare->motions.empty())
     fail(file, "variants of this case beside [[compare.motion]], whose motions are those of this case", "another case");
   const std::filesystem::path path = path_beside(file.where(), file.name);
-  if (!std::filesystem::is_regular_file(path)) fail(file, "a case file", escaped(path.string()));
+  require_file(path, file.where(), file.path(), "a case file");
   return path.lexically_normal().string();
 }
 

@@ -133,7 +133,7 @@ std::size_t column_of(const Values& v, std::string_view key, const std::vector<s
 
 std::unique_ptr<const TimeFunction> make_csv(const Values& v) {
   const std::filesystem::path path = path_beside(v.where("file"), v.text("file"));
-  if (!std::filesystem::is_regular_file(path)) throw InputError(v.where("file"), v.path("file"), "a file", escaped(path.string()));
+  require_file(path, v.where("file"), v.path("file"));
 
   const double time_factor = unit_factor(v, "time_unit", {"s"});
   const double factor = v.number("scale") * unit_factor(v, "unit", {"1", "m/s2", "m/s", "m", "N", "N m", "Pa", "rad"});

@@ -147,8 +147,10 @@ TEST_F(RecordCase, NamesWhatIsWrong) {
   const std::string unknown = replaced(good, "function = \"ey\"", "function = \"eyy\"");
   says(unknown, "function = \"eyy\"",
        "ground_acceleration[1].function: expected the name of a function or record, found \"eyy\" (did you mean \"ey\"?)");
-  const std::string missing = replaced(good, "file = \"ey.txt\"", "file = \"up.txt\"");
-  says(missing, "file = \"up.txt\"", "record[1].file: expected a file, found \"up.txt\"");
+  const std::string missing = replaced(good, "file = \"ey.txt\"", "file = \"north.at2\"");
+  says(missing, "file = \"north.at2\"", "record[1].file: expected a file, found no file \"north.at2\"");
+  const std::string misspelt = replaced(good, "file = \"ey.txt\"", "file = \"eyy.txt\"");
+  says(misspelt, "file = \"eyy.txt\"", "record[1].file: expected a file, found no file \"eyy.txt\" (did you mean \"ey.txt\"?)");
   const std::string turned = tower(quick, replaced(absolute_frame(), "direction = \"ux\"", "direction = \"rz\""));
   says(replaced(turned, "fixed = [\"rz\"]", "fixed = [\"ux\"]"), "function = \"ex\"",
        "motion[0].function: expected a function (a record is a motion: no load, no rotation), found the record \"ex\"");

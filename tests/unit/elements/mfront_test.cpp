@@ -215,7 +215,7 @@ TEST(Mfront, RefusesALibraryThatDoesNotFit) {
   expect_refusal(refused_library("mfront_behaviors.c"),
                  {"case.toml:3: law.library", "a shared library", "no file", "did you mean", "mfront_behaviours.c"});
   expect_refusal(refused_library("mfront_behaviours.c"), {"case.toml:3: law.library", "a shared library", "invalid ELF header"});
-  expect_refusal(refused_library("/dev/zero"), {"no file \"/dev/zero\""});
+  expect_refusal(refused_library("/dev/zero"), {"\"/dev/zero\", which is no regular file"});
 }
 
 TEST(Mfront, RefusesABehaviourThatDoesNotFit) {

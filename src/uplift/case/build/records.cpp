@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "uplift/base/format.h"
+#include "uplift/base/file.h"
 #include "uplift/base/text.h"
 #include "uplift/base/units.h"
 #include "uplift/case/build/model.h"
@@ -42,7 +43,7 @@ Motion component_of(const CaseRecordSource& record, std::vector<Motion> motions)
 }
 
 Motion read_record(const CaseRecordSource& record) {
-  if (!std::filesystem::is_regular_file(record.location)) fail(*record.file, "a file", escaped(record.location));
+  require_file(record.location, record.file->where(), record.file->path());
   try {
     Motion motion = component_of(record, read_motions(record.location, record.options));
     motion.file = record.file->name;

@@ -27,12 +27,10 @@ std::vector<std::string> behaviours_of(const std::filesystem::path& path) {
 }
 
 std::shared_ptr<void> open_library(const Values& law, const std::filesystem::path& path) {
-  const auto refuse = [&](const std::string& found, const std::string& nearest = {}) {
-    fail(law, "library", "a shared library made by MFront", found, nearest);
-  };
-  if (!std::filesystem::is_regular_file(path)) refuse("no file " + escaped(path.string()), nearest_file(path));
+  constexpr char wanted[] = "a shared library made by MFront";
+  require_file(path, law.where("library"), law.path("library"), wanted);
   void* handle = ::dlopen(std::filesystem::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (handle == nullptr) refuse(::dlerror());
+  if (handle == nullptr) fail(law, "library", wanted, ::dlerror());
   return {handle, [](void* opened) { ::dlclose(opened); }};
 }
 

@@ -29,10 +29,8 @@ std::string beginning(const fs::path& path, std::uintmax_t most, const Where& wh
 }  // namespace
 
 Mesh read_mesh(const std::string& path, const Where& where, const std::string& mesh, bool isolated) {
+  require_file(path, where, "", a_mesh_file);
   std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) throw InputError(where, "", a_mesh_file, "no file " + escaped(path), nearest_file(path));
-  if (!fs::is_regular_file(status)) throw InputError(where, "", a_mesh_file, escaped(path) + ", which is no file");
   const std::uintmax_t size = fs::file_size(path, error);
   if (error) throw InputError(where, "", "a file that can be read", escaped(path) + ": " + error.message());
   if (beginning(path, std::min<std::uintmax_t>(size, hdf5_signature.size()), where) == hdf5_signature)
