@@ -121,7 +121,7 @@ void Stepper::separate_impulse(const Impact& data) {
   constexpr double round_off = 1e-9;
   const ImpactScratch& scratch = impact_scratch_;
   if (!closing_ && !(scratch.push.squaredNorm() > round_off * round_off * scratch.y.squaredNorm())) return;
-  read_forces(data, closing_);
+  read_forces(data, closing_ || gap_moves_);  // on a moving support the force of a held point works
   if (!closing_) return;
   for (const Block& block : last_->model->blocks) {
     if (block.cone == nullptr) continue;  // the force of a law follows from its opening
