@@ -160,13 +160,23 @@ bool Stepper::strikes(const Impact& data) {
 }
 
 /// Velocity and acceleration by the rule of the case: impulses spread with the damping force that they change. Where a point with friction
-/// is open, friction belongs to the impulse (true); elsewhere sliding points slide on, and the rule alone is exact.
+/// is open or begins to stick, friction belongs to the impulse (true); elsewhere sliding points slide on, and the rule alone is exact.
 bool Stepper::apply_rule(const Level& level, Impact& data) {
   if (strikes(data) && impact_of_friction(level, data)) return true;
   impulse_.setZero();
   if (level.impact != nullptr) data.mass = level.impact.get();
   impact_.apply(data, next_.velocity, impulse_, impact_scratch_);
   if (!impact_.holds_acceleration()) return false;
+  constexpr double same = 1e-9;
+  if (coulomb_ != nullptr && (next_.velocity - velocity_free_).squaredNorm() > same * same * next_.velocity.squaredNorm()) {
+    const Vector stopped = next_.velocity;
+    next_.velocity = velocity_free_;
+    if (impact_of_friction(level, data)) {
+      impulse_.setZero();
+      return true;
+    }
+    next_.velocity = stopped;
+  }
   damp_impact(level, next_.velocity, next_.acceleration);
   if (level.impact != nullptr && closing_)
     soften(level, next_.acceleration);

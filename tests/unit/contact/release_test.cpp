@@ -6,9 +6,9 @@
 
 // What `project_hold` does on a light mass: a heavy body M stands on a mass m on a spring k, is lifted by a pulse, lands and bounces. With
 // the trapezoidal rule the work of a contact pressure that is gone at the end of a step is half of it times the gap that has opened: a
-// release creates energy, a closing destroys it,
+// release gives energy back, a closing takes it,
 //     residual = sum over releases of lambda g_1 / 2 - sum over closings of lambda_1 g_0 / 2
-// The first sum is small as long as the step resolves the light mass, dt sqrt(k/m) < 1.
+// The first sum is small as long as the step resolves the light mass, dt sqrt(k/m) < 1; contact gives back no more than it has taken.
 namespace uplift::contact_test::release_test {
 namespace {
 
@@ -20,11 +20,12 @@ double load_at(double t) {
 
 struct Energy {
   double residual = 0, release = 0, closing = 0, impact = 0, external = 0, scale = 0;  // J; scale: largest external work
-  int releases = 0;
+  int releases = 0, dropped = 0;                                                       // with and without the force of their beginning
 };
 
-/// The march written down for these two masses.
-Energy by_hand(double k, double m, double step) {
+/// The march written down for these two masses. `passive`: a release that would give back more than impacts have taken begins without the
+/// force.
+Energy by_hand(double k, double m, double step, bool passive = true) {
   Energy found;
   double x = -pressed / k, y = x, vx = 0, vy = 0, ax = 0, ay = 0, held = pressed;
   const double start = 0.5 * k * y * y;
@@ -41,6 +42,13 @@ Energy by_hand(double k, double m, double step) {
     }
     const double bx = 4 * (x1 - px) / (step * step), by = 4 * (y1 - py) / (step * step);
     const double wx = vx + 0.5 * step * (ax + bx), wy = vy + 0.5 * step * (ay + by);
+    const double taken = found.impact - found.release - found.closing, given = lambda == 0 ? 0.5 * held * (x1 - y1) : 0;
+    if (passive && given > 0 && taken - given < -1e-9 * found.scale) {
+      ax -= held / body, ay += held / m, held = 0;
+      ++found.dropped;
+      --n;
+      continue;
+    }
     found.external += 0.5 * (f0 + f1) * (x1 - x);
     found.scale = std::max(found.scale, std::abs(found.external));
     if (lambda == 0) {
@@ -102,7 +110,7 @@ TEST(ReleaseOfALightMass, impact_holds_the_work_of_pressures_that_begin_or_end) 
   for (const Case& data :
        {Case{3e8, 30, 2.5e-4}, Case{3e8, 30, 1e-3}, Case{3e10, 30, 1e-3}, Case{3e11, 30, 2.5e-4}, Case{3e9, 1000, 1e-3}}) {
     const Energy hand = by_hand(data.k, data.m, data.step);
-    ASSERT_GT(hand.releases, 0);
+    ASSERT_GT(hand.releases + hand.dropped, 0);
     EXPECT_NEAR(hand.residual, hand.release + hand.closing, 1e-9 * hand.scale);
     for (const std::string name : {"lagrange", "augmented_lagrangian"}) {
       const RunResult run = by_program(data.k, data.m, data.step, name);
@@ -111,14 +119,16 @@ TEST(ReleaseOfALightMass, impact_holds_the_work_of_pressures_that_begin_or_end) 
       EXPECT_NEAR(run.table[1].back(), 0, 1e-6 * hand.scale);
       EXPECT_NEAR(run.table[2].back(), hand.impact - hand.residual, 1e-6 * hand.scale);
       EXPECT_NEAR(run.table[3].back(), hand.external, 1e-6 * hand.scale);
+      EXPECT_LE(run.energy_created, 1e-8 * hand.scale);
     }
   }
 }
 
-// Claim: a resolved mass releases without creating energy, the share falling with the square of the step; an unresolved one does not.
+// Claim: by the trapezoidal rule alone a resolved mass releases without creating energy, the share falling with the square of the step; an
+// unresolved one does not.
 TEST(ReleaseOfALightMass, creates_energy_only_where_the_step_does_not_resolve_it) {
   const auto share = [](double k, double m, double step) {
-    const Energy hand = by_hand(k, m, step);
+    const Energy hand = by_hand(k, m, step, false);
     return hand.release / hand.scale;
   };
   EXPECT_LE(share(3e8, 30, 2.5e-4), 1e-3);  // dt sqrt(k/m) = 0.8

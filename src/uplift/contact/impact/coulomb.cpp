@@ -35,6 +35,12 @@ bool CoulombRates::solve(const Vector& free, const Vector& takes_part, double at
   solution_ = fresh_;
   solution_.opening = free;
   if (!(open > 0)) return true;
+  std::size_t point = 0;  // the first guess: what approaches sticks
+  for (const Block& block : problem_.model->blocks) {
+    const int normal = block.first + block.batch.normal();
+    for (int row = normal; row < normal + block.batch.points; ++row, ++point)
+      solution_.status[point] = problem_.free_opening[row] < -at_rest ? Status::stick : Status::open;
+  }
   return solve_frictional(problem_, {.gap_tolerance = at_rest}, work_, solution_).converged;
 }
 
