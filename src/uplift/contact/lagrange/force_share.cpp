@@ -246,7 +246,8 @@ bool ForceShare::solve(const InterfaceProblem& problem, double gap, InterfaceSol
   size(problem.rows(), problem.model->factor.cols());
   list(problem, gap, solution);
   if (points_.empty()) return false;
-  range_.compute(given_, columns_, given_.cols(), 1e-12);
+  constexpr double alike = 1e-9;  // directions of slips have the round-off of the slips: a base that slides as a whole has few coordinates
+  range_.compute(given_, columns_, given_.cols(), alike);
   rank_ = range_.rank();
   if (rank_ == columns_ || !find_resultant() || !newton()) return false;
   kept_ = solution.force;
