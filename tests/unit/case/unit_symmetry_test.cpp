@@ -161,7 +161,7 @@ TEST(UnitSymmetry, Constraints) {
       for (const char* impact : {"project_hold", "propagate"}) expect_same({kind, method, impact}, "coulomb", coulomb(0.5));
 }
 
-/// What an impact changes in the velocity is told from round-off where it also changes the damping force.
+/// With damping, whose force changes at impacts.
 TEST(UnitSymmetry, DampedConstraints) {
   for (const char* method : {"lagrange", "augmented_lagrangian"}) {
     expect_same({Structure::block, method, "project_hold", true}, "coulomb", coulomb(0.5));
