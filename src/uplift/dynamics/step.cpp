@@ -149,27 +149,6 @@ StepBalance Stepper::balance(const Vector& start) const {
   return StepBalance::weighted(next_, now_, options_.scheme.alpha_f, options_.scheme.alpha_m);
 }
 
-/// Openings that prescribed motions make by themselves, at the end of a step.
-void Stepper::move_gap(double from, double to) {
-  gap_ = still_gap_;
-  gap_step_.setZero();
-  for (const PrescribedMotion& motion : model_.motions) {
-    const double now = motion.function->value(to);
-    gap_ += motion.opening * now;
-    gap_step_ += motion.opening * (now - motion.function->value(from));
-  }
-}
-
-/// And their rates, which impacts and held points need.
-void Stepper::move_rates(double time) {
-  moved_velocity_.setZero(b_.rows());
-  moved_acceleration_.setZero(b_.rows());
-  for (const PrescribedMotion& motion : model_.motions) {
-    moved_velocity_ += motion.opening * motion.function->rate(time);
-    moved_acceleration_ += motion.opening * motion.function->acceleration(time);
-  }
-}
-
 void Stepper::products(const Vector& u, const Vector& v, Vector& ku, Vector& mv) const {
   if (pair_ != nullptr) {
     pair_->multiply(u, v, ku, mv);

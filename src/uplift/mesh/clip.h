@@ -36,10 +36,4 @@ bool is_clipped_away(const PlacedCell& cell, std::span<const HalfSpace> within, 
 /// triangles and tets, and those parallel to the sides of cells whose sides are parallel.
 bool is_level(const PlacedCell& cell, const HalfSpace& plane);
 
-/// The section of a cell by a plane: its corners [m], in the plane two, in space in their order round it; those within `tolerance` once.
-/// Empty when the plane only touches the cell.
-std::vector<Vec3> section(Cell cell, std::span<const Vec3> corners, const HalfSpace& plane, double tolerance);
-/// What is left of a section within half-spaces.
-std::vector<Vec3> clip_section(std::vector<Vec3> corners, const std::vector<HalfSpace>& within, double tolerance);
-
 }  // namespace uplift

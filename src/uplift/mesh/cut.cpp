@@ -8,6 +8,7 @@
 #include "uplift/mesh/cut_filling.h"
 #include "uplift/mesh/index.h"
 #include "uplift/mesh/parts.h"
+#include "uplift/mesh/section.h"
 
 namespace uplift {
 namespace {

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <tuple>
 
-#include "uplift/base/format.h"
 #include "uplift/base/file.h"
+#include "uplift/base/format.h"
 #include "uplift/base/text.h"
 #include "uplift/base/units.h"
 #include "uplift/case/build/model.h"
