@@ -25,7 +25,7 @@ class BadInput(CliTest):
 
     def test_missing_file_of_a_function(self):
         text = self.replace('shape = { type = "half_sine", duration = 0.1 }', 'shape = { type = "csv", file = "none.csv" }')
-        self.refused(text, f'{{file}}:{line_of(text, "none.csv")}: function[0].shape.file: expected a file, found "none.csv"')
+        self.refused(text, f'{{file}}:{line_of(text, "none.csv")}: function[0].shape.file: expected a file, found no file "none.csv"')
 
     def test_unknown_command(self):
         done = self.uplift("chek", "case.toml", expect=2)

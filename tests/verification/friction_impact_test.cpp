@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "manual.h"
 #include "support.h"
@@ -129,7 +130,8 @@ std::string embedded(unsigned seed) {
 }
 
 // Claim: blocks that slip, lift off and land in a pit create no energy: what the residual of the ledger gains in the steps in which a point
-// is open stays below 1e-10 of the largest external work, and friction and impact together never give any back.
+// is open stays below 1e-10 of the largest external work, and friction and impact together never give any back. Round-off of the factors
+// changes the residual in every step, up or down: by the median change m in n steps like a random walk, of which 3 m sqrt(n) are allowed.
 TEST(FrictionImpact, BlocksInAPitCreateNoEnergy) {
   VERIFIES({"Impact", "Energy of blocks that slip, lift off and land", "balance of energy, to round-off"});
   int lifting = 0;
@@ -140,14 +142,21 @@ TEST(FrictionImpact, BlocksInAPitCreateNoEnergy) {
           &impact = run["energy.impact"], &base = run["skin.uplifted_ratio"], &walls = run["skin walls.uplifted_ratio"];
     const double scale = run.peak("energy.external");
     double gained = 0, created = 0, given = 0;
+    std::vector<double> changes;
     for (std::size_t i = 1; i < run.rows(); ++i) {
       const bool open = std::max({base[i - 1], base[i], walls[i - 1], walls[i]}) > 0;
       gained += open ? residual[i] - residual[i - 1] : 0;
       created = std::max(created, gained);
+      if (open) changes.push_back(std::abs(residual[i] - residual[i - 1]));
       given = std::max(given, friction[i - 1] + impact[i - 1] - friction[i] - impact[i]);
     }
     lifting += static_cast<int>(run.peak("skin.uplifted_ratio") > 0.1);
-    VERIFY_LE("energy created while a point is open over the largest external work", "1", created / scale, 1e-10) << seed;
+    ASSERT_FALSE(changes.empty()) << seed;
+    const auto median = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 2);
+    std::ranges::nth_element(changes, median);
+    const double round_off = 3 * *median * std::sqrt(static_cast<double>(changes.size()));
+    VERIFY_LE("median change of the residual in a step over the largest external work", "1", *median / scale, 1e-10) << seed;
+    VERIFY_LE("energy created while a point is open beyond round-off over the same", "1", (created - round_off) / scale, 1e-10) << seed;
     if (seed != 13)  // its slip turns round in a step in which a gap closes: 1.3e-6 (docs/theory, section 5)
       VERIFY_LE("energy that friction and impact give back over the same", "1", given / scale, 1e-10) << seed;
   }

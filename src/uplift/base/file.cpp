@@ -92,7 +92,7 @@ std::string nearest_file(const fs::path& path) {
   std::error_code error;
   std::vector<std::string> names;
   for (fs::directory_iterator entry(folder_of(path), error), end; !error && entry != end; entry.increment(error))
-    if (!entry->is_directory(error)) names.push_back(entry->path().filename().string());
+    if (entry->is_regular_file(error)) names.push_back(entry->path().filename().string());
   const std::string nearest = nearest_name(path.filename().string(), names);
   return nearest.empty() ? "" : (path.parent_path() / nearest).string();
 }
@@ -104,6 +104,7 @@ void require_file(const fs::path& path, const Where& where, const std::string& k
   const auto refuse = [&](const std::string& found, const std::string& nearest = {}) {
     throw InputError(where, key, wanted, found, nearest);
   };
+  if (status.type() == fs::file_type::none) refuse(escaped(path.string()) + ": " + error.message());
   if (status.type() != fs::file_type::not_found) refuse(escaped(path.string()) + ", which is no regular file");
   if (!fs::is_directory(folder_of(path), error)) refuse("no folder " + escaped(folder_of(path).string()));
   refuse("no file " + escaped(path.string()), nearest_file(path));

@@ -35,8 +35,8 @@ class InterfaceEnergy {
   Vector last_, density_, lost_;
 };
 
-/// What the friction of constraints takes in a step [J]: the work of the mean force on the slip of every point, where it is positive (a
-/// force that turns round in the step may give energy back: that is created by the scheme and stays in the residual).
+/// What the friction of constraints takes in a step [J]: the work of the mean force on the slip of every point, where it is positive. What
+/// a force that turns round in the step gives back stays in the residual; step_friction.cpp keeps it small.
 double friction_work(const std::vector<Block>& blocks, const State& from, const State& to);
 
 }  // namespace uplift

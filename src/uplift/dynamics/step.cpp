@@ -335,7 +335,7 @@ bool Stepper::try_step(Level& level) {
       const double taken = impact_loss_;
       apply_impact(level);
       // pressure and friction act together: what one gives while the other takes more is no energy that contact has given
-      const double given = std::max(0.0, std::min(taken - impact_loss_, friction_step_));
+      const double given = std::max(0.0, std::min({taken - impact_loss_, -impact_loss_, friction_step_}));
       friction_step_ -= given, impact_loss_ += given;
     }
     small::copy(contact_.size(), contact_.data(), next_.force.data());
@@ -363,7 +363,7 @@ bool Stepper::substep(int halving) {
     if (newton_ != nullptr) std::swap(plastic_now_, plastic_next_);
     counts_.deepest = std::max(counts_.deepest, halving);
     last_step_ = now.step;
-    friction_.reduced = false;
+    friction_.reduced = friction_.slips = false;
     return true;
   }
   impact_loss_ = impact_before;

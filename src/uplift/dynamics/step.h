@@ -59,11 +59,13 @@ struct MarchState {
   std::vector<int> sizes;  // halvings whose matrices have been factorised
 };
 
-/// Of impacts with friction (step_friction.cpp): what a step has changed of its beginning, and work space.
+/// Of steps that drop forces of their beginning, and of impacts with friction (step_friction.cpp); work space.
 struct FrictionOfImpacts {
   bool reduced = false;                        // forces of the beginning have been reduced; they were:
   Vector force, acceleration;                  // rows, unknowns
+  bool slips = false;                          // points with friction are among them
   Vector dropped, rates, takes_part, impulse;  // rows; dropped: forces that are taken out
+  Vector change;                               // rows: of the impulse over that of the forces [N s]
   Vector velocity, after, soon;                // unknowns: velocity and acceleration after the impact, velocity half a step later
   Vector push;                                 // C^T p of the mass
 };

@@ -133,7 +133,7 @@ void Stepper::hold_initial_acceleration() {
   const Vector free = now_.acceleration;
   contact_ = now_.force;
   if (!project_initial(data, now_.acceleration)) return;
-  if (!carries) slide_initially(blocks, data, free);
+  slide_initially(blocks, data, free);
   now_.force = now_.mean_force = contact_;
 }
 

@@ -58,7 +58,8 @@ bool moves(const Vector& one, const Vector& other, double closed_gap) {
 
 void Stepper::prepare_friction(const std::vector<Block>& blocks) {
   coulomb_ = std::make_unique<CoulombRates>(blocks, mass_spread_->factor);
-  for (Vector* rows : {&friction_.force, &friction_.dropped, &friction_.rates, &friction_.takes_part, &friction_.impulse})
+  for (Vector* rows :
+       {&friction_.force, &friction_.dropped, &friction_.rates, &friction_.takes_part, &friction_.impulse, &friction_.change})
     rows->setZero(b_.rows());
   for (Vector* unknowns : {&friction_.acceleration, &friction_.velocity, &friction_.after, &friction_.soon})
     unknowns->setZero(bulk_.unknowns);
@@ -102,13 +103,13 @@ bool Stepper::drop_creating() {
   if (!options_.scheme.average_acceleration() || !impact_.holds_acceleration()) return false;
   const InterfaceSolution& end = *solution_;
   const std::vector<Block>& blocks = last_->model->blocks;
-  const double round_off = owed * largest_external_;
-  const bool slips = coulomb_ != nullptr && (friction_.reduced || (moves(now_.opening, end.opening, closed_gap_) &&
-                                                                   (lifted(blocks, now_, end.force, end.opening, closed_gap_) ||
-                                                                    energies_.residual + friction_given(blocks, end) > round_off)));
+  const double scale = std::max(largest_external_, std::abs(initial_energy_)), round_off = owed * scale;
+  const bool slips = coulomb_ != nullptr && (friction_.slips || (moves(now_.opening, end.opening, closed_gap_) &&
+                                                                 (lifted(blocks, now_, end.force, end.opening, closed_gap_) ||
+                                                                  energies_.residual + friction_given(blocks, end) > round_off)));
   const bool owes = impact_loss_ + contact_work(end.force, end.opening) < -round_off;
   if (!slips && !owes) return false;
-  const double nothing = 1e-15 * largest_external_;
+  const double nothing = 1e-15 * scale;
   Vector& dropped = friction_.dropped;
   bool any = false;
   for (const Block& block : blocks) {
@@ -119,7 +120,9 @@ bool Stepper::drop_creating() {
       if (work.sum() >= -nothing || !(work.begun < 0)) continue;
       if (!any) dropped.setZero(now_.force.size());
       any = true;
-      const bool again = friction_.reduced && now_.force[i] != friction_.force[i];
+      friction_.slips = friction_.slips || block.cone->friction() > 0;
+      bool again = false;
+      for (int c = 0, row = i; friction_.reduced && c < work.rows; ++c, row += n) again = again || now_.force[row] != friction_.force[row];
       const double kept = work.held ? std::max(0.0, -work.ended / work.begun) * (again ? 0.5 : 1) : 0;
       for (int c = 0, row = i; c < work.rows; ++c, row += n) dropped[row] = (1 - kept) * now_.force[row];
     }
@@ -137,7 +140,7 @@ bool Stepper::drop_creating() {
 void Stepper::restore_dropped() {
   if (!friction_.reduced) return;
   now_.force = friction_.force, now_.acceleration = friction_.acceleration;
-  friction_.reduced = false;
+  friction_.reduced = friction_.slips = false;
 }
 
 /// Whether the impulse of friction is wanted: a point with friction is open before or after the step, and something moves in it or at its
@@ -145,7 +148,7 @@ void Stepper::restore_dropped() {
 bool Stepper::strikes(const Impact& data) {
   if (coulomb_ == nullptr) return false;
   const std::vector<Block>& blocks = last_->model->blocks;
-  if (friction_.reduced) return true;
+  if (friction_.slips) return true;
   if (!any_without_pressure(blocks, now_.force, contact_, [](int, bool) { return true; })) return false;
   const bool open = lifted(blocks, now_, contact_, next_.opening, closed_gap_);
   if (open && moves(now_.opening, next_.opening, closed_gap_)) return true;
@@ -160,23 +163,12 @@ bool Stepper::strikes(const Impact& data) {
 }
 
 /// Velocity and acceleration by the rule of the case: impulses spread with the damping force that they change. Where a point with friction
-/// is open or begins to stick, friction belongs to the impulse (true); elsewhere sliding points slide on, and the rule alone is exact.
+/// is open, friction belongs to the impulse (true); elsewhere sliding points slide on, and the rule alone is exact.
 bool Stepper::apply_rule(const Level& level, Impact& data) {
   if (strikes(data) && impact_of_friction(level, data)) return true;
-  impulse_.setZero();
   if (level.impact != nullptr) data.mass = level.impact.get();
   impact_.apply(data, next_.velocity, impulse_, impact_scratch_);
   if (!impact_.holds_acceleration()) return false;
-  constexpr double same = 1e-9;
-  if (coulomb_ != nullptr && (next_.velocity - velocity_free_).squaredNorm() > same * same * next_.velocity.squaredNorm()) {
-    const Vector stopped = next_.velocity;
-    next_.velocity = velocity_free_;
-    if (impact_of_friction(level, data)) {
-      impulse_.setZero();
-      return true;
-    }
-    next_.velocity = stopped;
-  }
   damp_impact(level, next_.velocity, next_.acceleration);
   if (level.impact != nullptr && closing_)
     soften(level, next_.acceleration);
@@ -208,7 +200,7 @@ bool Stepper::impact_of_friction(const Level& level, const Impact& data) {
   if (!impulses.solve(now.rates, now.takes_part, still * closed_gap_ / level.step)) return false;
   spread.add(1, impulses.z(), now.velocity);
   now.impulse = impulses.impulse();
-  impulse_ = now.impulse - data.velocity_weight * now.dropped;
+  now.change = now.impulse - data.velocity_weight * now.dropped;
 
   // the force after the impact
   const double at_rest = 1e-9 * now.rates.cwiseAbs().maxCoeff();
@@ -219,7 +211,7 @@ bool Stepper::impact_of_friction(const Level& level, const Impact& data) {
   damp_impact(level, now.velocity, now.after);
   if (soft) soften(level, now.after);
   if (!obey_friction(soft ? *level.impact : *mass_spread_, soft ? *level.coulomb : *coulomb_, data, now.velocity, now.after)) return false;
-  next_.velocity = now.velocity, next_.acceleration = now.after;
+  next_.velocity = now.velocity, next_.acceleration = now.after, impulse_ = now.change;
   if (!closing_) return true;
   now.velocity += now_.velocity;
   row_rates(data, now.velocity, data.moved_velocity, 0, contact_.size(), now.rates);

@@ -14,13 +14,13 @@ void Stepper::move_gap(double from, double to) {
   }
 }
 
-/// And their rates, which impacts and held points need.
+/// And their rates, which impacts and held points need; a jump of the velocity is in the velocity alone.
 void Stepper::move_rates(double time) {
   moved_velocity_.setZero(b_.rows());
   moved_acceleration_.setZero(b_.rows());
   for (const PrescribedMotion& motion : model_.motions) {
     moved_velocity_ += motion.opening * motion.function->rate(time);
-    moved_acceleration_ += motion.opening * motion.function->acceleration(time);
+    moved_acceleration_ += motion.opening * motion.function->smooth_acceleration(time);
   }
 }
 

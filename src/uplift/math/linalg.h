@@ -4,7 +4,7 @@
 
 #include "uplift/math/product_kernels.h"
 
-// The file that names Eigen; beside it only math/dense.h and math/sparse_solvers.h do (factorisations, slow to compile).
+// The file that names Eigen; elsewhere only headers of math do (dense.h and sparse_solvers.h, slow to compile: factorisations).
 namespace uplift {
 
 using Vector = Eigen::VectorXd;

@@ -19,6 +19,11 @@
   KIND template struct general_matrix_vector_product<Index, double, const_blas_data_mapper<double, Index, RowMajor>, RowMajor, false,     \
                                                      double, const_blas_data_mapper<double, Index, ColMajor>, false, 0>;
 
+#if EIGEN_WORLD_VERSION == 3 && EIGEN_MAJOR_VERSION == 4  // the names are Eigen's own; with another version every file has its copy
 namespace Eigen::internal {
 UPLIFT_PRODUCT_KERNELS(extern)
 }
+#else
+#undef UPLIFT_PRODUCT_KERNELS
+#define UPLIFT_PRODUCT_KERNELS(KIND)
+#endif
