@@ -1,8 +1,8 @@
 #pragma once
 #include <Eigen/Core>
 
-// The kernels of products of dense matrices and vectors, which are not inlined: compiled once, in product_kernels.cpp, and no longer in
-// each of the files that multiply (20 to 50 kB and up to some seconds of each).
+// The kernels of products of dense matrices and vectors, which are not inlined: compiled once, not in every file that multiplies.
+// NOLINTBEGIN(bugprone-macro-parentheses)
 #define UPLIFT_PRODUCT_KERNELS(KIND)                                                                                                      \
   KIND template struct gebp_kernel<double, double, Index, blas_data_mapper<double, Index, ColMajor, 0, 1>,                                \
                                    gebp_traits<double, double>::mr, gebp_traits<double, double>::nr, false, false>;                       \
@@ -18,7 +18,7 @@
                                                      double, const_blas_data_mapper<double, Index, RowMajor>, false, 0>;                  \
   KIND template struct general_matrix_vector_product<Index, double, const_blas_data_mapper<double, Index, RowMajor>, RowMajor, false,     \
                                                      double, const_blas_data_mapper<double, Index, ColMajor>, false, 0>;
-
+// NOLINTEND(bugprone-macro-parentheses)
 #if EIGEN_WORLD_VERSION == 3 && EIGEN_MAJOR_VERSION == 4  // the names are Eigen's own; with another version every file has its copy
 namespace Eigen::internal {
 UPLIFT_PRODUCT_KERNELS(extern)
