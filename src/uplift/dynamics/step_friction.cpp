@@ -5,8 +5,8 @@
 #include "uplift/dynamics/step_level.h"
 #include "uplift/model/base_size.h"
 
-// Impacts of points with friction (docs/theory, section 5): the impulse of friction belongs to the projected normal impulse, not to the
-// multiplier of the displacement solve, and the force at the beginning of a step does no work on a point that it no longer holds.
+// Contact is passive (docs/theory, section 5): the force at the beginning of a step does no work on a point that it no longer holds (18a),
+// (18c), and the impulse of friction belongs to the projected normal impulse, not to the multiplier of the displacement solve (18b).
 namespace uplift {
 namespace {
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "unit/case/cut_support.h"
 
@@ -13,70 +15,25 @@ namespace {
 
 using namespace support;
 
-/// A rigid block of 6.1 t whose centre lies at (0, height), 9.2 m wide on some points, whose ground moves 5.36 times a second.
-std::string block(double height, int points, double step, const std::string& law, const std::string& more = "") {
-  return fmt::format(R"(title = "block"
-bonded = false
-method = "lagrange"
-[nodes]
-base = [0, 0]
-[[rigid]]
-name = "raft"
-node = "base"
-mass = 6100
-inertia = 190000
-centre = [0, {}]
-[[interface]]
-name = "ground"
-footing = {{ body = "base", width = 9.2, thickness = 4.9, points = {} }}
-law = {{ {} }}
-[gravity]
-acceleration = [0, -9.81]
-[[function]]
-name = "shake"
-shape = {{ type = "harmonic", frequency = 5.36, end = 0.56 }}
-[[ground_acceleration]]
-function = "shake"
-direction = [1, 0]
-amplitude = 6
-[[stage]]
-type = "static"
-[[stage]]
-type = "dynamic"
-duration = 3
-step = {}
-{}
-)",
-                     height, points, law, step, more);
-}
+/// A rigid block of 6.1 t, 9.2 m wide on some points.
+struct Body {
+  std::string name;
+  double height;  // m: of its centre over the ground
+  int points;
+  std::string law;
+  bool held = false;  // horizontally
+};
 
-// The first rise of the block takes the force of the beginning of its step over half a step: energy that no impact before has taken.
-TEST(ContactBalance, ContactGivesBackNoMoreThanItHasTaken) {
-  for (const double step : {0.01, 0.015, 0.02}) {
-    const std::string text = block(8.5, 2, step, "type = \"unilateral\"", "[[support]]\nnode = \"base\"\nfixed = [\"ux\"]\n");
-    const RunResult result = run_on(text, {});
-    EXPECT_EQ(result.status, RunStatus::completed) << result.reason;
-    EXPECT_GT(result.max_opening.value, 1e-4) << step;
-    EXPECT_LE(result.energy_created, 1e-7 * result.energy_scale) << step;
-    EXPECT_GE(result.final_energy.impact, -1e-7 * result.energy_scale) << step;
-  }
-}
+constexpr const char* unilateral = R"(type = "unilateral")";
 
-// A low block slides to and fro and does not lift off: what the ground puts in, friction and the ends of slips take.
-TEST(ContactBalance, FrictionThatTurnsRoundGivesNothingBack) {
-  for (const double step : {0.01, 0.03, 0.048}) {
-    const RunResult result = run_on(block(1, 8, step, "type = \"coulomb\", friction = 0.17"), {});
-    EXPECT_EQ(result.status, RunStatus::completed) << result.reason;
-    EXPECT_LT(result.max_opening.value, 1e-12);
-    EXPECT_LE(result.energy_created, 1e-8 * result.energy_scale) << step;
-    EXPECT_GT(result.final_energy.friction, 0.9 * result.energy_scale) << step;
-  }
-}
-
-/// A low block that slides on the ground and, 50 m away, a high one without friction that rocks.
-std::string slider(bool with_rocker, double step) {
-  const auto body = [](const std::string& name, double x, double height, int points, const std::string& law) {
-    return fmt::format(R"([[rigid]]
+/// Bodies 50 m apart on ground that moves 5.36 times a second with 6 m/s2. The history "path" is the displacement of the first one.
+std::string shaken(const std::vector<Body>& bodies, double step, double duration = 3) {
+  std::string nodes = "[nodes]\n", parts;
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    const Body& body = bodies[k];
+    const double x = 50.0 * static_cast<double>(k);
+    nodes += fmt::format("{} = [{}, 0]\n", body.name, x);
+    parts += fmt::format(R"([[rigid]]
 name = "raft of {0}"
 node = "{0}"
 mass = 6100
@@ -87,17 +44,13 @@ name = "under {0}"
 footing = {{ body = "{0}", width = 9.2, thickness = 4.9, points = {3} }}
 law = {{ {4} }}
 )",
-                       name, x, height, points, law);
-  };
-  return std::string(R"(title = "slider"
+                         body.name, x, body.height, body.points, body.law);
+    if (body.held) parts += fmt::format("[[support]]\nnode = \"{}\"\nfixed = [\"ux\"]\n", body.name);
+  }
+  return fmt::format(R"(title = "bodies"
 bonded = false
 method = "lagrange"
-[nodes]
-slider = [0, 0]
-)") + (with_rocker ? "rocker = [50, 0]\n[[support]]\nnode = \"rocker\"\nfixed = [\"ux\"]\n" : "") +
-         body("slider", 0, 1, 8, "type = \"coulomb\", friction = 0.17") +
-         (with_rocker ? body("rocker", 50, 8.5, 2, "type = \"unilateral\"") : "") +
-         fmt::format(R"([gravity]
+{}{}[gravity]
 acceleration = [0, -9.81]
 [[function]]
 name = "shake"
@@ -107,23 +60,46 @@ function = "shake"
 direction = [1, 0]
 amplitude = 6
 [[output.history]]
-node = "slider"
+node = "{}"
 quantity = "ux"
 name = "path"
 [[stage]]
 type = "static"
 [[stage]]
 type = "dynamic"
-duration = 1
+duration = {}
 step = {}
 )",
-                     step);
+                     nodes, parts, bodies.front().name, duration, step);
+}
+
+// The first rise of the block takes the force of the beginning of its step over half a step: energy that no impact before has taken.
+TEST(ContactBalance, ContactGivesBackNoMoreThanItHasTaken) {
+  for (const double step : {0.01, 0.015, 0.02}) {
+    const RunResult result = run_on(shaken({{"rocker", 8.5, 2, unilateral, true}}, step), {});
+    EXPECT_EQ(result.status, RunStatus::completed) << result.reason;
+    EXPECT_GT(result.max_opening.value, 1e-4) << step;
+    EXPECT_LE(result.energy_created, 1e-7 * result.energy_scale) << step;
+    EXPECT_GE(result.final_energy.impact, -1e-7 * result.energy_scale) << step;
+  }
+}
+
+// A low block slides to and fro and does not lift off: what the ground puts in, friction and the ends of slips take.
+TEST(ContactBalance, FrictionThatTurnsRoundGivesNothingBack) {
+  for (const double step : {0.01, 0.03, 0.048}) {
+    const RunResult result = run_on(shaken({{"slider", 1, 8, R"(type = "coulomb", friction = 0.17)"}}, step), {});
+    EXPECT_EQ(result.status, RunStatus::completed) << result.reason;
+    EXPECT_LT(result.max_opening.value, 1e-12);
+    EXPECT_LE(result.energy_created, 1e-8 * result.energy_scale) << step;
+    EXPECT_GT(result.final_energy.friction, 0.9 * result.energy_scale) << step;
+  }
 }
 
 // What a step drops for one body is of no concern to another one.
 TEST(ContactBalance, BodiesWithoutConnectionMoveAsIfAlone) {
   for (const double step : {0.015, 0.02, 0.04, 0.048}) {
-    const RunResult alone = run_on(slider(false, step), {}), beside = run_on(slider(true, step), {});
+    const Body slider{"slider", 1, 8, R"(type = "coulomb", friction = 0.17)"}, rocker{"rocker", 8.5, 2, unilateral, true};
+    const RunResult alone = run_on(shaken({slider}, step, 1), {}), beside = run_on(shaken({slider, rocker}, step, 1), {});
     const auto one = history(alone, "path"), other = history(beside, "path");
     ASSERT_EQ(one.size(), other.size());
     double largest = 0;
