@@ -119,7 +119,7 @@ void add_method(const Case& read, const RunSpec& spec, BuiltCase& built) {
       check_part(Raw{std::string(cone && !spec.bonded ? "project_hold" : "none"), root.where(), "impact"}, impact_rules());
   built.plan.impact = make_part(impact_catalog(), impact ? *impact : standard);
   // these turn the velocity relative to a support round in every step: points of a moving one would hold tension
-  if (cone && impact && built.plan.impact->force_includes_impulse())
+  if (impact && built.plan.impact->force_includes_impulse())
     for (const PrescribedMotion& motion : built.model.motions)
       if (!motion.opening.isZero(0))
         fail(*impact, "", "\"project_hold\" or \"project\" for points on a support that motion " + in_quotes(motion.name) + " moves",

@@ -24,7 +24,8 @@ struct Impact {
   const Vector* area = nullptr;   // all rows: the same weight, for the tangents; null: all alike
   double velocity_weight = 0;     // gamma * dt [s]: a force p at the end of the step put -velocity_weight * M^-1 B^T p into the velocity
   double step = 0;                // s: of the step just solved
-  // all rows: what prescribed motions alone make of the openings' rates at the end of the step [m/s, m/s2]; null: nothing
+  // all rows: what prescribed motions alone make of the openings' rates at the end of the step [m/s, m/s2]; null: nothing, and always for
+  // rules whose force includes the impulse, which are refused there
   const Vector* moved_velocity = nullptr;
   const Vector* moved_acceleration = nullptr;
   double acceleration_weight = 1;  // and -acceleration_weight * M^-1 B^T p into the acceleration

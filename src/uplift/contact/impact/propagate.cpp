@@ -15,7 +15,7 @@ class Propagate final : public ImpactRule {
 
   void apply(const Impact& impact, Vector& velocity, Vector& impulse, ImpactScratch& scratch) const override {
     if (!select_rows(impact, Hold::equality, scratch)) return;
-    project_rate(impact, velocity, impact.moved_velocity, 0, Select::all, scratch);  // leaves B v + s in the target
+    project_rate(impact, velocity, nullptr, 0, Select::all, scratch);  // leaves B v in the target
     const Matrix& c = impact.dynamic->factor;
     const Index rows = c.rows();
     for (Index i = 0; i < rows; ++i) scratch.target[i] *= scratch.fixed[i] > 0 ? factor_ : 0;

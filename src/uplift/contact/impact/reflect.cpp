@@ -8,7 +8,7 @@ class Reflect final : public ImpactRule {
   bool force_includes_impulse() const override { return true; }
   void apply(const Impact& impact, Vector& velocity, Vector& impulse, ImpactScratch& scratch) const override {
     if (!select_rows(impact, Hold::equality, scratch)) return;
-    project_rate(impact, velocity, impact.moved_velocity, impact.velocity_weight, Select::all, scratch);
+    project_rate(impact, velocity, nullptr, impact.velocity_weight, Select::all, scratch);
     correct(impact, 2, velocity, scratch);
     add_impulse(impact, 2, impulse, scratch);
   }
