@@ -25,6 +25,14 @@ bool is_diagonal(const Sparse& matrix) {
   return true;
 }
 
+/// y = A x, A symmetric; that of a reduced model does not fit into the first cache.
+void multiply_full(const Matrix& a, const Vector& x, Vector& y) {
+  if (a.rows() > small_bulk)
+    small::multiply_symmetric(a, x.data(), y.data());
+  else
+    small::multiply(a, x.data(), y.data());
+}
+
 }  // namespace
 
 BulkMatrix::BulkMatrix(const Sparse& matrix, bool dense)
@@ -42,7 +50,7 @@ void BulkMatrix::multiply(const Vector& x, Vector& y) const {
   } else if (zero_)
     y.setZero();
   else if (sparse_ == nullptr)
-    small::multiply(full_, x.data(), y.data());
+    multiply_full(full_, x, y);
   else
     y.noalias() = sparse_->transpose() * x;  // symmetric: by rows, which gathers instead of scattering
 }
@@ -210,7 +218,7 @@ void BulkFactor::solve(const Vector& b, Vector& x, BulkWork& work) const {
     return;
   }
   if (small_) {
-    small::multiply(inverse_, b.data(), x.data());
+    multiply_full(inverse_, b, x);
     return;
   }
   ++work.counts->back_solves;

@@ -73,6 +73,9 @@ inline void multiply_fixed(const double* a, const double* x, double* y) {
 /// y = A x of any size
 void multiply_any(const Matrix& a, const double* x, double* y);
 
+/// y = A x, A symmetric, of which the upper triangle is read: half of the traffic where the matrix does not fit into the first cache
+void multiply_symmetric(const Matrix& a, const double* x, double* y);
+
 /// y = A x, A column-major n x m
 inline void multiply(const Matrix& a, const double* x, double* y) {
   const std::ptrdiff_t n = a.rows(), m = a.cols();
