@@ -8,6 +8,8 @@ import pathlib
 from ctypes import CFUNCTYPE, POINTER, Structure, byref, c_char_p, c_double, c_int, c_long, c_size_t, c_void_p
 from typing import Any, Callable, List, Optional, Tuple
 
+from . import _blas_kernels
+
 ABI_VERSION = 1
 
 
@@ -144,7 +146,8 @@ def library() -> ctypes.CDLL:
     tried = []
     for name in _candidates():
         try:
-            made = ctypes.CDLL(name)
+            with _blas_kernels.chosen_by_instructions():
+                made = ctypes.CDLL(name)
         except OSError as error:
             tried.append(f"{name}: {error}")
             continue

@@ -2,6 +2,7 @@
 #include <csignal>
 #include <string_view>
 
+#include "uplift/cli/blas_kernels.h"
 #include "uplift/cli/commands.h"
 #include "uplift/cli/console.h"
 #include "uplift/distributed/petsc.h"
@@ -28,6 +29,7 @@ int run_program(int count, char** words) {
 }  // namespace
 
 int main(int count, char** words) {
+  uplift::cli::choose_blas_kernels(words);
   const uplift::Petsc petsc;
   if (petsc.rank() > 0) {
     leave_signals_to_rank_0();

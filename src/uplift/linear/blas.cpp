@@ -14,6 +14,7 @@ extern "C" void dgemm_(const char* transpose_a, const char* transpose_b, const i
                        const double* a, const int* lda, const double* b, const int* ldb, const double* beta, double* c, const int* ldc);
 extern "C" void openblas_set_num_threads(int count);
 extern "C" int openblas_get_num_threads();
+extern "C" char* openblas_get_corename();
 extern "C" void* blas_memory_alloc(int purpose);
 extern "C" void blas_memory_free(void* piece);
 
@@ -71,6 +72,10 @@ Matrix transposed_product(const Eigen::Ref<const Matrix>& a, const Eigen::Ref<co
   Matrix product = Matrix::Zero(a.cols(), b.cols());
   multiply("T", 1, a, b, 0, product);
   return product;
+}
+
+std::string_view blas_kernels() {
+  return openblas_get_corename();
 }
 
 SingleThreadBlas::SingleThreadBlas() {

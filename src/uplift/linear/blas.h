@@ -1,4 +1,6 @@
 #pragma once
+#include <string_view>
+
 #include "uplift/math/linalg.h"
 
 namespace uplift {
@@ -12,6 +14,10 @@ Matrix transposed_product(const Eigen::Ref<const Matrix>& a, const Eigen::Ref<co
 /// beside others, keeps it, and tries for ever where the system refuses it. Here it takes one for the thread, or std::bad_alloc is thrown.
 /// BLAS itself uses one thread: results do not depend on the number of cores, and runs side by side do not fight for them.
 void prepare_blas();
+
+/// The processor for which the kernels of BLAS were written that are in use, such as "SkylakeX"; "Prescott" (SSE3) for those that OpenBLAS
+/// does not know.
+std::string_view blas_kernels();
 
 /// As long as one exists BLAS uses one thread; with the last one the number of threads is what it was before the first. For a library in a
 /// process where others use the same OpenBLAS.
