@@ -330,7 +330,10 @@ bool Stepper::try_step(Level& level) {
     small::copy(contact_.size(), contact_.data(), next_.force.data());
     friction_step_ = friction_work(last_->model->blocks, now_, next_);
     // what moving supports put in through the interfaces, by the forces that moved the step
-    if (gap_moves_) energies_.external += 0.5 * (now_.force + contact_).dot(gap_step_);
+    if (gap_moves_) {
+      const double end = impacts_ ? end_share() : 0.5;
+      energies_.external += (1 - end) * now_.force.dot(gap_step_) + end * contact_.dot(gap_step_);
+    }
     if (impacts_) {
       const double taken = impact_loss_;
       apply_impact(level);

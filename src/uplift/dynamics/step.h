@@ -144,6 +144,7 @@ class Stepper {
   void prepare_impacts();
   bool select_pressed(const std::vector<Block>& blocks, const Vector& forces);
   Impact impact_data(const Vector& force) const;
+  double end_share() const;
   double contact_work(const Vector& end_force, const Vector& end_opening) const;
   void apply_impact(Level& level);
   bool strikes(const Impact& data);

@@ -69,10 +69,18 @@ Impact Stepper::impact_data(const Vector& force) const {
   return data;
 }
 
-/// Work that the pressures of constraints take from the motion in the step, 1/2 (p_0 + p_1) dg. It is zero where a point stays closed;
+/// The share w_1 of the force at the end of a step in the change of velocity; that of the force at its beginning is 1 - w_1. Half with
+/// average acceleration.
+double Stepper::end_share() const {
+  const Scheme& scheme = options_.scheme;
+  return scheme.gamma * (1 - scheme.alpha_f) / (1 - scheme.alpha_m);
+}
+
+/// Work that the pressures of constraints take from the motion in the step, (w_0 p_0 + w_1 p_1) dg. It is zero where a point stays closed;
 /// where a gap closes it is the part of the impact's loss that the projection of the velocity does not see, where one opens a little is
 /// given back. The sum with the projection does not depend on the step (docs/theory, section 5).
 double Stepper::contact_work(const Vector& end_force, const Vector& end_opening) const {
+  const double of_end = end_share(), of_begin = 1 - of_end;
   double work = 0;
   for (const Block& block : last_->model->blocks) {
     if (block.cone == nullptr) continue;
@@ -80,9 +88,9 @@ double Stepper::contact_work(const Vector& end_force, const Vector& end_opening)
     const double *force = now_.force.data() + normal, *next_force = end_force.data() + normal, *opening = now_.opening.data() + normal,
                  *next_opening = end_opening.data() + normal;
 #pragma omp simd reduction(+ : work)
-    for (int i = 0; i < block.batch.points; ++i) work += (force[i] + next_force[i]) * (next_opening[i] - opening[i]);
+    for (int i = 0; i < block.batch.points; ++i) work += (of_begin * force[i] + of_end * next_force[i]) * (next_opening[i] - opening[i]);
   }
-  return 0.5 * work;
+  return work;
 }
 
 /// Velocity, acceleration and contact force of a step are corrected by the rule of impact, for the points that are pressed at its end. The
