@@ -155,8 +155,8 @@ struct BuiltCase {
   double tuned_mass = 0;                               // kg: of the tuned point mass, 0 without
   std::vector<FunctionUse> functions;                  // of all that moves or loads the model
   bool laws_of_step = false;                           // some behaviour made here depends on the step
-  // N: resultant, against the first interface's normal, of the dead loads on everything that is connected to its upper side (the soil
-  // too where the surface ends inside it)
+  // N: resultant, against the mean normal of the first interface, of the dead loads on everything that is connected to its upper side (the
+  // soil too where the surface ends inside it)
   double weight = 0;
   int top = -1, base = -1;      // nodes whose motion is shown: the highest mass, the first interface's body
   Dof sway = ux;                // horizontal direction that is shown: in space that of the larger loads

@@ -85,7 +85,7 @@ Dof sway_of(const Model& model) {
 double weight_of(const BuiltCase& built) {
   const Model& model = built.model;
   if (model.interfaces.empty()) return 0;
-  const Vec3 normal = model.interfaces.front().normal.front();
+  const Vec3 normal = mean_normal(model.interfaces.front());
   const std::vector<char> carried = part_of(model, built.facts.front().upper);
   double weight = 0;
   for (std::size_t i = 0; i < model.time_loads.size(); ++i) {

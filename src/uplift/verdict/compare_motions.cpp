@@ -10,6 +10,7 @@
 
 #include "uplift/base/format.h"
 #include "uplift/case/schema/analysis_sections.h"
+#include "uplift/interface/shear.h"
 
 namespace uplift {
 namespace {
@@ -28,9 +29,8 @@ std::vector<std::pair<Quantity, double>> quantity_peaks(const RunSpec& spec, con
     add("ratio", run.max_uplifted_ratio.value);
     add("opening", run.max_opening.value);
   }
-  // a base without tangential components carries no shear: a support does
-  const auto carries_shear = [](const Interface& interface) { return interface.batch.components > 1; };
-  if (std::ranges::any_of(std::span(built.model.interfaces).first(built.bases()), carries_shear))
+  // where bases carry no shear, a support does
+  if (std::ranges::any_of(std::span(built.model.interfaces).first(built.bases()), bears_shear))
     add("shear", std::abs(run.max_base_shear.value));
   add("moment", std::abs(run.max_base_moment.value));
   const auto has_pressure = [](const Interface& interface) { return !interface.footprint; };

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "uplift/base/format.h"
+#include "uplift/interface/shear.h"
 #include "uplift/laws/macro_element.h"
 #include "uplift/verdict/base_over_time.h"
 #include "uplift/verdict/beams.h"
@@ -103,7 +104,7 @@ void add_full_loss(const BaseOverTime& base, InterfaceVerdict& said) {
 }
 
 void add_forces(const BaseOverTime& base, std::vector<VerdictNumber>& numbers) {
-  if (base.interface.batch.components > 1) add(numbers, extreme(base, "max_shear", [&](std::size_t i) { return base.shear(i); }));
+  if (bears_shear(base.interface)) add(numbers, extreme(base, "max_shear", [&](std::size_t i) { return base.shear(i); }));
   add(numbers, extreme(base, "max_moment", [&](std::size_t i) { return base.moment(i); }));
   const auto compression = [&](std::size_t i) { return -base.at(i).axial; };
   add(numbers, extreme(base, "max_compression", [&](std::size_t i) { return std::max(0.0, compression(i)); }));

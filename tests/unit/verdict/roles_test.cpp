@@ -1,5 +1,6 @@
 // Bases and walls of embedded foundations: forces by hand, division by normals, what is asked of a wall.
 #include <cmath>
+#include <optional>
 
 #include "unit/verdict/strip_support.h"
 #include "uplift/verdict/foundation.h"
@@ -237,6 +238,66 @@ TEST(VerdictRoles, OneGroupIsDividedByItsNormals) {
   EXPECT_NEAR(value(numbers.whole, "max_total_shear"), 2e5, 1e-4);
   const bool asked = std::ranges::any_of(run.columns, [](const Request& column) { return column.name == "soil walls.max_opening"; });
   EXPECT_TRUE(asked);
+}
+
+/// The last value of a column of the histories; none without it.
+std::optional<double> last_of(const RunResult& run, const std::string& name) {
+  for (std::size_t k = 0; k < run.columns.size(); ++k)
+    if (run.columns[k].name == name) return run.table[k + 1].back();
+  return {};
+}
+
+/// Smooth walls push sideways with their pressure alone, a level base does not.
+TEST(VerdictRoles, SmoothWallsBearTheHorizontalForce) {
+  std::string text = pit("");
+  const std::string rough = ", K_t = 5e7, tangential = \"coulomb\", friction = 0.5";
+  text.erase(text.find(rough), rough.size());
+  const BuiltCase built = built_of(text);
+  const RunResult run = run_of(built);
+  ASSERT_EQ(run.status, RunStatus::completed) << run.reason;
+  ASSERT_TRUE(last_of(run, "soil walls.shear"));
+  EXPECT_NEAR(*last_of(run, "soil walls.shear"), 2e5, 1e-3);
+  EXPECT_FALSE(last_of(run, "soil.shear"));
+  EXPECT_EQ(find_number(interface_of(numbers_of(built, run, nullptr), "soil").numbers, "max_shear"), nullptr);
+}
+
+/// A wedge of 30 degrees in a smooth groove: both sides are bases, and their pressures bear the weight and the push in full.
+TEST(VerdictRoles, AWedgeBearsItsWholeWeightAndThePush) {
+  const BuiltCase built = built_of(R"(title = "wedge"
+bonded = false
+[nodes]
+tip = [0, 0]
+left = [-2, 1.1547005383792515]
+right = [2, 1.1547005383792515]
+[[rigid]]
+name = "wedge"
+node = "tip"
+slaves = ["left", "right"]
+mass = 2e4
+inertia = 1e5
+[[interface]]
+name = "groove"
+line = { upper = ["left", "tip", "right"] }
+law = { type = "springs", K_n = 1e8 }
+[gravity]
+acceleration = [0, -10]
+[[load]]
+node = "tip"
+force = [3e4, 0]
+[[stage]]
+type = "static"
+)");
+  ASSERT_EQ(built.facts.size(), 1u);
+  EXPECT_EQ(built.facts[0].role, Role::base);
+  EXPECT_NEAR(built.weight, 2e5, 1e-6);  // not its part along the normal of one side, 1.73e5
+  const RunResult run = run_of(built);
+  ASSERT_EQ(run.status, RunStatus::completed) << run.reason;
+  const VerdictNumbers numbers = numbers_of(built, run, nullptr);
+  const InterfaceVerdict& said = numbers.interfaces.front();
+  EXPECT_NEAR(value(said.numbers, "max_compression"), 2e5, 1e-3);
+  EXPECT_NEAR(value(said.numbers, "max_shear"), 3e4, 1e-3);
+  ASSERT_TRUE(last_of(run, "groove.shear"));
+  EXPECT_NEAR(*last_of(run, "groove.shear"), 3e4, 1e-3);
 }
 
 TEST(VerdictRoles, TheRoleCanBeStated) {

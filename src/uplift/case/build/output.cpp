@@ -9,6 +9,7 @@
 #include "uplift/case/build/forces.h"
 #include "uplift/case/build/model.h"
 #include "uplift/dynamics/plastic_bulk.h"
+#include "uplift/interface/shear.h"
 #include "uplift/laws/stated.h"
 
 namespace uplift {
@@ -268,7 +269,7 @@ void add_requests(const Case& read, const CaseNames& names, BuiltCase& built) {
     const bool nodes_turn_not = built.top >= 0 && built.base >= 0 && !moves(model, built.base_turn());
     for (std::size_t k = 0; k < model.interfaces.size(); ++k)
       for (const InterfaceQuantity& quantity : interface_quantities(model.interfaces[k], *built.behaviours[k])) {
-        if (is_shear(quantity.kind) && model.interfaces[k].batch.components == 1) continue;
+        if (is_shear(quantity.kind) && !bears_shear(model.interfaces[k])) continue;
         if (is_base_motion(quantity.kind) && !(nodes_turn_not && k == 0 && quantity.kind != Column::settlement)) continue;
         requests.push_back(make(quantity.kind, fmt::format("{}.{}", model.interfaces[k].name, quantity.word), quantity.unit));
         requests.back().interface = static_cast<int>(k);
