@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "uplift/model/reduced.h"
 #include "uplift/run/force_rows.h"
@@ -159,7 +160,14 @@ void EquilibriumCheck::add_forces(const ForceModel& forces, Snapshot& at) const 
     sum_up(internal, -1, sum);
   };
   if (has_held())
-    for (Index i = 0; i < model.free(); ++i) at.unbalanced[model.kept[static_cast<std::size_t>(i)]] -= (*stage_->held)[i];
+    for (Index i = 0; i < model.free(); ++i) {
+      const int unknown = model.kept[static_cast<std::size_t>(i)];
+      const double held = (*stage_->held)[i];
+      at.unbalanced[unknown] -= held;
+      // the weight on released supports cancels what they have borne: at rest every sum is round-off
+      if (!model.space.is_rotation(model.space.index_of(unknown)))
+        at.sums.largest_reaction = std::max(at.sums.largest_reaction, std::abs(held));
+    }
   if (model.assembly.b.rows() > 0) put(model.assembly.b.transpose() * at.joint, at.sums.joint);
   if (stage_->second_order != nullptr) {
     Vector displacement(model.full_unknowns());

@@ -6,6 +6,7 @@
 #include <memory>
 #include <random>
 
+#include "ran_support.h"
 #include "unit/model/model_support.h"
 #include "uplift/elements/solid.h"
 #include "uplift/mesh/box.h"
@@ -86,6 +87,39 @@ TEST(EquilibriumOfInstants, ABodyThatMovesWithItsFootIsNotStrained) {
   const double weight = density * width * width * height * gravity, of_round_off = 1e-9 * 30e6 * width;
   EXPECT_LT(found.instants[0].largest_reaction, weight);
   EXPECT_NEAR(found.instants[0].reactions.force.x(), 0, of_round_off);
+}
+
+/// Ground whose supports are released, and that nothing shakes: its weight cancels what they have borne, and nothing is left but round-off.
+TEST(EquilibriumOfInstants, GroundAtRestOnReleasedSupportsIsInEquilibrium) {
+  const support::Ran ran = support::run_text(R"(title = "ground at rest"
+[mesh.soil_box.soil]
+width = 6
+size = 1
+[[mesh.soil_box.soil.layers]]
+thickness = 4
+[[solid]]
+group = "soil_1"
+shear_wave_speed = 150
+poisson = 0.3
+density = 1900
+[gravity]
+[[support]]
+group = "soil_bottom"
+fixed = ["ux", "uy"]
+stages = "static"
+[[absorbing]]
+group = "soil_bottom"
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 0.1
+step = 0.001
+)");
+  ASSERT_EQ(ran.result.status, RunStatus::completed) << ran.result.reason;
+  ASSERT_FALSE(ran.result.equilibrium.instants.empty());
+  EXPECT_LT(ran.result.equilibrium.residual, 1e-9);
+  EXPECT_EQ(ran.result.equilibrium.warning(), "");
 }
 
 TEST(EquilibriumOfInstants, KeepsOrSumsUpTheSameNumbers) {
