@@ -113,6 +113,15 @@ class Modes(CliTest):
         self.assertGreater(abs(shape["top"][0]), 10 * abs(shape["base"][0]))
         self.assertTrue(all(mode["frequency"] == 0 for mode in modes["base_free"][:1]))
 
+    def test_a_model_without_interface_has_one_table(self):
+        self.write('title = "spring"\n[nodes]\no = [0, 0]\n[[mass]]\nnode = "o"\nmass = 1\n[[support]]\nnode = "o"\nfixed = ["uy", "rz"]\n'
+                   '[[spring]]\nnodes = ["o"]\ndirection = [1, 0]\nstiffness = 39.47841760435743\n'
+                   '[[stage]]\ntype = "dynamic"\nduration = 1\nstep = 0.01\n')
+        text = self.uplift("modes", "case.toml").stdout
+        self.assertEqual(text.count("frequency [Hz]"), 1)
+        self.assertRegex(text, r"\n +1 +1 +1 +100\.0")  # 1 Hz: (2 pi)^2 N/m under 1 kg
+        self.assertNotIn("interfaces", text)
+
 
 class Describe(CliTest):
     def test_every_listed_part_can_be_described(self):

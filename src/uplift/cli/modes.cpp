@@ -36,9 +36,14 @@ int modes(const Options& options, int count) {
     return Exit::done;
   }
   const BuiltCase built = build(loaded.read, runs_of_case(loaded.read).front());
-  const std::vector<Mode> bonded = bonded_modes(built.at_rest(), count), base_free = base_free_modes(built.at_rest(), count);
-  print_modes(built.at_rest(), bonded, "interfaces closed and bonded");
-  print_modes(built.at_rest(), base_free, "\nbase free (interfaces open)");
+  const Model& model = built.at_rest();
+  const std::vector<Mode> bonded = bonded_modes(model, count);
+  if (model.interfaces.empty()) {
+    print_modes(model, bonded, "modes of the model, which has no interface");
+  } else {
+    print_modes(model, bonded, "interfaces closed and bonded");
+    print_modes(model, base_free_modes(model, count), "\nbase free (interfaces open)");
+  }
   say("\nmode shapes: uplift modes --json");
   return Exit::done;
 }
