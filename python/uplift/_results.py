@@ -107,7 +107,7 @@ class Verdict(Record):
 
     @property
     def converged(self) -> Optional[bool]:
-        """Whether no number moves by more than 5 % with twice the step; None: not examined."""
+        """Whether no number moves by more than 5 %, no force on a base by more than 3 %, with twice the step; None: not examined."""
         result = self._table["step_check"]["result"]
         return {"converged": True, "not converged": False}.get(result)
 

@@ -14,6 +14,7 @@ constexpr double least_share_of_change = 0.1;                  // of an area, an
 constexpr double least_motion = 0.05;                          // of the largest motion
 constexpr double steps_per_period = 20, least_spectrum = 0.1;  // of floor spectra; least value beside their peak
 constexpr double least_eccentricity = 0.01;                    // of the width
+constexpr double long_loss = 0.05;                             // s without contact: shorter ones are hops within one impact
 
 /// What a change of the numbers of one interface, or of the whole run, is measured by.
 struct Scale {
@@ -110,7 +111,7 @@ std::string how_it_ended(const RunResult& run) {
 }
 
 void judge(StepCheck& check) {
-  const bool moves = check.largest > accepted_step_change, by_chance = check.part.change > accepted_step_change;
+  const bool moves = check.largest > accepted_step_change, by_chance = check.part.change > accepted_force_change;
   const bool loses = check.lost > accepted_energy_loss;
   check.state = moves || by_chance || loses ? StepCheck::State::not_converged : StepCheck::State::converged;
   check.sufficient_step = moves ? rounded_down(check.step * accepted_step_change / check.largest) : 0;
@@ -127,6 +128,7 @@ using Instant = StepRecord::Instant;
 using OfInstant = double (*)(const Instant&);
 constexpr std::pair<std::string_view, OfInstant> forces_of_a_base[] = {
     {"max_moment", [](const Instant& now) { return std::sqrt(now.moment_1 * now.moment_1 + now.moment_2 * now.moment_2); }},
+    {"max_shear", [](const Instant& now) { return std::sqrt(now.shear_1 * now.shear_1 + now.shear_2 * now.shear_2); }},
     {"max_compression", [](const Instant& now) { return -now.axial; }},
     {"max_toe_pressure", [](const Instant& now) { return now.pressure; }}};
 
@@ -232,6 +234,7 @@ StepCheck check_step(const BuiltCase& built, const RunResult& run, const FloorRu
     compare_steps(numbers, numbers_of(*companion.built, *companion.run, companion.bonded), check);
     compare_parts(run.steps, companion.run->steps, numbers, check);
     if (floors) compare_floors(floors->floors, floor_spectra(companion.built->plan, *companion.run), check, least_acceleration(built, run));
+    check.no_contact = value_or(numbers.whole, "full_loss_of_contact", 0);
     check.lost = run.energy_scale > 0 ? run.energy_lost / run.energy_scale : 0;
     judge(check);
   }
@@ -242,9 +245,15 @@ std::string StepCheck::sentence() const {
   if (state == State::not_made) return "Error of the time step: not examined" + (reason.empty() ? "" : " (" + reason + ")") + ".";
   const std::string steps = fmt::format("{} instead of {}", format_quantity(coarse_step, "s"), format_quantity(step, "s"));
   if (state == State::not_converged)
-    return "Not converged: " + why_not(steps) + " The changes beside the numbers are no bounds of their errors.";
+    return "Not converged: " + why_not(steps) + after_loss() + " The changes beside the numbers are no bounds of their errors.";
   return fmt::format("Converged: with twice the step ({}) no number of the verdict changes by more than {}{}.", steps, percent(largest),
                      what_changes().empty() ? "" : " (" + what_changes() + ")");
+}
+
+std::string StepCheck::after_loss() const {
+  if (no_contact < long_loss) return "";
+  return fmt::format(" There is no contact for {}: every impact depends on the one before, and a smaller step need not settle them.",
+                     format_quantity(no_contact, "s"));
 }
 
 std::string StepCheck::what_changes() const {
@@ -254,11 +263,11 @@ std::string StepCheck::what_changes() const {
 
 std::string StepCheck::why_not(const std::string& steps) const {
   if (!reason.empty()) return fmt::format("{} ({}).", reason, steps);
-  if (largest <= accepted_step_change && part.change <= accepted_step_change)
+  if (largest <= accepted_step_change && part.change <= accepted_force_change)
     return fmt::format("the time scheme lost {} of the energy that was put in, because a step of {} does not resolve the motion.",
                        percent(lost), format_quantity(step, "s"));
   if (largest <= accepted_step_change)
-    return fmt::format("with twice the step ({}) the {} of {} agrees by chance: from {} to {} its peaks differ by {}.", steps,
+    return fmt::format("with twice the step ({}) the {} of {} from {} to {} changes by {} of that of the whole time.", steps,
                        part.quantity->brief, part.of, format_quantity(part.from, "s"), format_quantity(part.to, "s"), percent(part.change));
   return fmt::format("with twice the step ({}) {} changes by {}; a step of {} is expected to be sufficient.", steps, what_changes(),
                      percent(largest), format_quantity(sufficient_step, "s"));

@@ -22,7 +22,7 @@ double longest_step(const RunPlan& plan);
 struct StepCheck {
   enum class State {
     not_made,       // the numbers were not compared with another step
-    converged,      // no number moves by more than accepted_step_change
+    converged,      // no number moves by more than accepted_step_change, no force on a base by more than accepted_force_change
     not_converged,  // at least one does, the scheme loses energy, or the companion ended differently
   } state = State::not_made;
   double step = 0, coarse_step = 0;           // s: longest of the dynamic stages, of the run and of the companion
@@ -42,11 +42,13 @@ struct StepCheck {
   // Share of the energy put in that the scheme lost in the run. A scheme that damps what no step near this one resolves gives both runs the
   // same wrong peak.
   double lost = 0;
+  double no_contact = 0;  // s: of the run, all bases at once
   std::string reason;  // why it was not made, or how the companion ended
   /// One sentence for the terminal and the first page.
   std::string sentence() const;
 
  private:
+  std::string after_loss() const;
   std::string what_changes() const;
   std::string why_not(const std::string& steps) const;
 };
@@ -54,6 +56,9 @@ std::string_view to_string(StepCheck::State);
 
 /// Share of its reference by which a number, or a peak within a part of the time, may change when the step is doubled.
 inline constexpr double accepted_step_change = 0.05;
+/// The same of the peaks of the forces on a base, in every part of the time, relative to the peak of all of it: the suggested step is
+/// meant to give forces within 3 %, and at impacts and slips, of first order, the change is about the error.
+inline constexpr double accepted_force_change = 0.03;
 /// Share of the energy put in that the time scheme may lose before the verdict marks it and a warning tells it.
 inline constexpr double accepted_energy_loss = 0.05;
 /// Parts of the time whose peaks are compared.
@@ -71,7 +76,7 @@ StepCheck check_step(const BuiltCase& built, const RunResult& run, const FloorRu
                      VerdictNumbers& numbers);
 /// The comparison alone: fills the rest of a check whose steps are known.
 void compare_steps(VerdictNumbers& numbers, const VerdictNumbers& coarse, StepCheck& check);
-/// The peaks of moment, compression and pressure of every base in twentieths of the time. One that the other run reaches a tenth of
+/// The peaks of moment, shear, compression and pressure of every base in twentieths of the time. One that the other run reaches a tenth of
 /// a part earlier or later, in the part beside it, counts as reached. `numbers`: of the run; its bases come first.
 void compare_parts(const StepRecord& steps, const StepRecord& coarse, const VerdictNumbers& numbers, StepCheck& check);
 /// The same for the spectra of floors, in the same order. Floors whose spectrum nowhere exceeds `least` [m/s2], or noise_share of the

@@ -165,8 +165,32 @@ TEST(StepCheck, PeaksThatAgreeByChanceAreNotConverged) {
   EXPECT_NEAR(check.part.to, 7.5, 1e-9);
   EXPECT_EQ(check.sufficient_step, 0) << "the change is not proportional to the step";
   EXPECT_EQ(check.sentence(),
-            "Not converged: with twice the step (2.00 ms instead of 1.00 ms) the largest compression of soil agrees by chance: from 7.00 s "
-            "to 7.50 s its peaks differ by 25 %. The changes beside the numbers are no bounds of their errors.");
+            "Not converged: with twice the step (2.00 ms instead of 1.00 ms) the largest compression of soil from 7.00 s to 7.50 s "
+            "changes by 25 % of that of the whole time. The changes beside the numbers are no bounds of their errors.");
+}
+
+/// Forces are asked for within 3 %; the other numbers may change by 5 %.
+TEST(StepCheck, ForcesMayChangeByThreePerCent) {
+  const auto state = [](double other) { return parts_compared(two_peaks(1e-3, 3.2, 2e6, 7.2, 1.5e6), two_peaks(2e-3, 3.2, 2e6, 7.2, other)); };
+  EXPECT_EQ(state(1.55e6).state, StepCheck::State::converged) << "0.05 MN of 2 MN";
+  EXPECT_EQ(state(1.57e6).state, StepCheck::State::not_converged) << "0.07 MN of 2 MN";
+}
+
+/// The direction of the shear in space changes nothing: 3 and 4 make 5.
+TEST(StepCheck, ShearOfEveryPart) {
+  const auto sheared = [](double step, double along_1, double along_2) {
+    StepRecord steps = two_peaks(step, 3.2, 2e6, 7.2, 2e6);
+    for (StepRecord::Instant& now : steps.instants) now.shear_1 = along_1 * now.axial, now.shear_2 = along_2 * now.axial;
+    return steps;
+  };
+  VerdictNumbers numbers = numbers_with({number("max_shear", 1e6)});
+  StepCheck check = compared(numbers, numbers_with({number("max_shear", 1e6)}));
+  compare_parts(sheared(1e-3, 0.3, 0.4), sheared(2e-3, 0.5, 0), numbers, check);
+  EXPECT_NEAR(check.part.change, 0, 1e-6);
+  compare_parts(sheared(1e-3, 0.3, 0.4), sheared(2e-3, 0.3, 0.2), numbers, check);
+  EXPECT_NEAR(check.part.change, 1 - std::sqrt(0.13) / 0.5, 1e-6);
+  EXPECT_EQ(check.part.quantity->name, "max_shear");
+  EXPECT_EQ(check.state, StepCheck::State::not_converged);
 }
 
 /// A peak just before the end of a part in one run, just after it in the other: 0.04 s apart, less than a tenth of a part.
@@ -238,6 +262,26 @@ TEST(StepCheck, ACompanionThatEndsDifferentlyShowsThatTheStepDecides) {
   coarse.status = RunStatus::interrupted;
   EXPECT_EQ(check_step(built, run, nullptr, {&coarse_built, longest_step(coarse_built.plan), &coarse}, numbers).state,
             StepCheck::State::not_made);
+}
+
+/// Hops within one impact do not count: 0.03 s.
+TEST(StepCheck, AfterALossOfContactASmallerStepNeedNotDo) {
+  BuiltCase built;
+  built.plan.stages.emplace_back().step = 1e-3;
+  const RunResult run;
+  for (const double lost : {0.03, 0.4}) {
+    VerdictNumbers numbers = numbers_with({number("max_moment", 1e6)}, {number("full_loss_of_contact", lost)});
+    const StepCheck check = check_step(built, run, nullptr, {&built, 2e-3, &run}, numbers);
+    EXPECT_EQ(check.no_contact, lost);
+  }
+  StepCheck check;
+  check.step = 1e-3, check.coarse_step = 2e-3, check.lost = 0.08, check.no_contact = 0.4;
+  VerdictNumbers numbers = numbers_with({number("max_moment", 1e6)});
+  compare_steps(numbers, numbers_with({number("max_moment", 1e6)}), check);
+  const std::string said = "There is no contact for 0.400 s: every impact depends on the one before, and a smaller step need not settle them.";
+  EXPECT_NE(check.sentence().find(said), std::string::npos) << check.sentence();
+  check.no_contact = 0.03;
+  EXPECT_EQ(check.sentence().find("no contact"), std::string::npos);
 }
 
 TEST(Wording, RoundsDownToOneTwoOrFive) {
