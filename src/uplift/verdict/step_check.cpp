@@ -126,11 +126,18 @@ std::string change_in_words(const VerdictNumber& number, double difference) {
 
 using Instant = StepRecord::Instant;
 using OfInstant = double (*)(const Instant&);
-constexpr std::pair<std::string_view, OfInstant> forces_of_a_base[] = {
-    {"max_moment", [](const Instant& now) { return std::sqrt(now.moment_1 * now.moment_1 + now.moment_2 * now.moment_2); }},
-    {"max_shear", [](const Instant& now) { return std::sqrt(now.shear_1 * now.shear_1 + now.shear_2 * now.shear_2); }},
-    {"max_compression", [](const Instant& now) { return -now.axial; }},
-    {"max_toe_pressure", [](const Instant& now) { return now.pressure; }}};
+/// A force on a base, and in how many parts of the time its peaks are compared.
+struct ComparedForce {
+  std::string_view name;
+  OfInstant of;
+  int parts;
+};
+/// Of the shear, which friction redistributes with every slip, the peak of all of it.
+constexpr ComparedForce forces_of_a_base[] = {
+    {"max_moment", [](const Instant& now) { return std::sqrt(now.moment_1 * now.moment_1 + now.moment_2 * now.moment_2); }, parts_of_time},
+    {"max_compression", [](const Instant& now) { return -now.axial; }, parts_of_time},
+    {"max_toe_pressure", [](const Instant& now) { return now.pressure; }, parts_of_time},
+    {"max_shear", [](const Instant& now) { return std::sqrt(now.shear_1 * now.shear_1 + now.shear_2 * now.shear_2); }, 1}};
 
 /// A force on a base over time.
 struct StepHistory {
@@ -203,12 +210,12 @@ void compare_floors(const std::vector<FloorSpectra>& floors, const std::vector<F
 void compare_parts(const StepRecord& steps, const StepRecord& coarse, const VerdictNumbers& numbers, StepCheck& check) {
   if (steps.size() < 2 || coarse.size() < 2) return;
   for (std::size_t k = 0; k < numbers.bases(); ++k)
-    for (const auto& [name, of] : forces_of_a_base) {
+    for (const auto& [name, of, parts] : forces_of_a_base) {
       const VerdictNumber* number = find_number(numbers.interfaces[k].numbers, name);
       if (!number || !number->coarse || !(number->value > number->least)) continue;
       const StepHistory fine{steps, k, of}, other{coarse, k, of};
-      const double peak = std::max(number->value, *number->coarse), length = (steps.time.back() - steps.time.front()) / parts_of_time;
-      for (int i = 0; i < parts_of_time; ++i) {
+      const double peak = std::max(number->value, *number->coarse), length = (steps.time.back() - steps.time.front()) / parts;
+      for (int i = 0; i < parts; ++i) {
         const double from = steps.time.front() + i * length, to = from + length, beside = length / 10;
         const double change = std::max(fine.peak(from, to) - other.peak(from - beside, to + beside),
                                        other.peak(from, to) - fine.peak(from - beside, to + beside)) /

@@ -43,7 +43,7 @@ struct StepCheck {
   // same wrong peak.
   double lost = 0;
   double no_contact = 0;  // s: of the run, all bases at once
-  std::string reason;  // why it was not made, or how the companion ended
+  std::string reason;     // why it was not made, or how the companion ended
   /// One sentence for the terminal and the first page.
   std::string sentence() const;
 
@@ -76,8 +76,9 @@ StepCheck check_step(const BuiltCase& built, const RunResult& run, const FloorRu
                      VerdictNumbers& numbers);
 /// The comparison alone: fills the rest of a check whose steps are known.
 void compare_steps(VerdictNumbers& numbers, const VerdictNumbers& coarse, StepCheck& check);
-/// The peaks of moment, shear, compression and pressure of every base in twentieths of the time. One that the other run reaches a tenth of
-/// a part earlier or later, in the part beside it, counts as reached. `numbers`: of the run; its bases come first.
+/// The peaks of moment, compression and pressure of every base in twentieths of the time, and that of the shear in all of it. One that the
+/// other run reaches a tenth of a part earlier or later, in the part beside it, counts as reached. `numbers`: of the run; its bases come
+/// first.
 void compare_parts(const StepRecord& steps, const StepRecord& coarse, const VerdictNumbers& numbers, StepCheck& check);
 /// The same for the spectra of floors, in the same order. Floors whose spectrum nowhere exceeds `least` [m/s2], or noise_share of the
 /// largest acceleration of all floors, are not excited: they decide nothing.
