@@ -38,6 +38,11 @@ bool decides(const VerdictQuantity& quantity) {
   return quantity.unit != "s" && quantity.name != "max_penetration";
 }
 
+bool is_force(const VerdictQuantity& quantity) {
+  constexpr std::string_view names[] = {"max_moment", "max_shear", "max_compression", "max_toe_pressure"};
+  return std::ranges::find(names, quantity.name) != std::end(names);
+}
+
 /// What the change of a number is divided by.
 double reference(const VerdictNumber& number, double other, const Scale& scale) {
   const VerdictQuantity& quantity = *number.quantity;
@@ -88,6 +93,7 @@ void compare_numbers(std::vector<VerdictNumber>& numbers, const std::vector<Verd
     number.coarse = other->value;
     if (!decides(*number.quantity) || is_noise_in_both(number)) continue;
     number.step_change = change_of_step(number, other->value, scale);
+    if (is_force(*number.quantity)) check.forces = std::max(check.forces, *number.step_change);
     if (*number.step_change > check.largest) check.largest = *number.step_change, check.quantity = number.quantity, check.of = of;
   }
 }
@@ -114,7 +120,8 @@ void judge(StepCheck& check) {
   const bool moves = check.largest > accepted_step_change, by_chance = check.part.change > accepted_force_change;
   const bool loses = check.lost > accepted_energy_loss;
   check.state = moves || by_chance || loses ? StepCheck::State::not_converged : StepCheck::State::converged;
-  check.sufficient_step = moves ? rounded_down(check.step * accepted_step_change / check.largest) : 0;
+  const double excess = std::max(check.largest / accepted_step_change, std::max(check.forces, check.part.change) / accepted_force_change);
+  check.sufficient_step = moves ? rounded_down(check.step / excess) : 0;
 }
 
 /// Relative to the larger of both values, 0.3 %.

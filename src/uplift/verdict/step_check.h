@@ -30,7 +30,8 @@ struct StepCheck {
   const VerdictQuantity* quantity = nullptr;  // that number, null: none changes, or a floor spectrum changes most
   std::string of;                             // its interface, beam or floor; empty: of the whole run
   double floors = 0, floors_to = 0;           // largest change of a floor spectrum, up to this frequency [Hz]; 0 Hz: there is none
-  double sufficient_step = 0;                 // s: where an error proportional to the step is accepted_step_change; 0 where unknown
+  double forces = 0;                          // largest change of a force or pressure among the numbers
+  double sufficient_step = 0;                 // s: where errors proportional to the step are the accepted ones; 0 where unknown
   /// The largest change of a peak of the forces on a base within a part of the time, relative to the peak of all of it. Where impacts make
   /// two runs go different ways, their overall peaks may still agree by chance; those of every part do not.
   struct Part {

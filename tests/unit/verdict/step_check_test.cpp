@@ -102,10 +102,11 @@ TEST(StepCheck, NamesTheNumberThatChangesMostAndTheStep) {
   EXPECT_DOUBLE_EQ(check.largest, 0.2);
   EXPECT_EQ(check.quantity->name, "max_compression");
   EXPECT_EQ(check.of, "soil");
-  EXPECT_DOUBLE_EQ(check.sufficient_step, 2e-4) << "0.25 ms would halve the change twice, rounded down";
+  EXPECT_DOUBLE_EQ(check.forces, 0.2);
+  EXPECT_DOUBLE_EQ(check.sufficient_step, 1e-4) << "3 of 20 % of 1 ms, rounded down";
   EXPECT_EQ(check.sentence(),
             "Not converged: with twice the step (2.00 ms instead of 1.00 ms) largest compression of soil changes by 20 %; "
-            "a step of 0.200 ms is expected to be sufficient. The changes beside the numbers are no bounds of their errors.");
+            "a step of 0.100 ms is expected to be sufficient. The changes beside the numbers are no bounds of their errors.");
   EXPECT_FALSE(numbers.whole.back().coarse) << "the companion has no drift";
   EXPECT_EQ(format_step_change(numbers.whole.back()), "");
   EXPECT_EQ(format_step_change(numbers.whole.front()), "\u00b10.2 %");
