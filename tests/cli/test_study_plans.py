@@ -61,6 +61,9 @@ class StudyPlans(CliTest):
         self.study(IDA.replace(limit, limit + 'of = "soil"\n'))
         self.uplift("study", "check", "s.study")
 
+    def test_percentiles_of_floors_need_common_levels(self):
+        self.refused("floor_spectra = true\n" + IDA, "floor_spectra", "expected stripes or cloud as the method")
+
     def test_searches_end(self):
         for tolerance in ("1e-18", "2", "nan"):
             self.refused(IDA.replace("start = 0.1", f"start = 0.1\ntolerance = {tolerance}"), "tolerance", "expected a number from 1e-06 to 1")

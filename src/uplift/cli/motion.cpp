@@ -78,7 +78,7 @@ std::vector<double> frequencies_of(const std::string& text) {
   if (!range) {
     std::ranges::sort(numbers);
     numbers.erase(std::ranges::unique(numbers).begin(), numbers.end());
-    if (numbers.size() < 2) refuse("one");
+    if (numbers.size() < 2) refuse(in_quotes(text) + ", a single one");
     return numbers;
   }
   if (numbers.size() != 3 || !(numbers[0] < numbers[1]) || numbers[2] < 2 || numbers[2] != std::floor(numbers[2])) refuse(in_quotes(text));

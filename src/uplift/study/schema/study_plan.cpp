@@ -120,7 +120,7 @@ const Section& study_section() {
        tables("correlation", correlation_section(), "correlations of variables"), tables("limit", limit_section(), "limit states"),
        table("design", design_section(), "design motion; absent: none").optional(),
        table("hazard", hazard_section(), "hazard curve; absent: none").optional(),
-       flag("floor_spectra", "keep the floor spectra of every run, for percentiles").standard(false),
+       flag("floor_spectra", "keep the floor spectra of every run, for percentiles at the levels of stripes or of a cloud").standard(false),
        table("run", run_section(), "how the runs are computed")}};
   return s;
 }
@@ -155,6 +155,9 @@ StudyPlan study_plan(const Raw& raw) {
   for (const Values& table : root.tables("motions")) plan.many_motions.push_back(many_motions_of(table));
   plan.site = site_of(root);
   plan.floor_spectra = root.flag("floor_spectra");
+  if (plan.floor_spectra && plan.method.searches())
+    fail(root, "floor_spectra", "stripes or cloud as the method: percentiles are those of runs at one level",
+         "a method that gives every motion intensities of its own");
   const Values& run = root.table("run");
   plan.timeout = number_if(run, "timeout");
   plan.memory = number_if(run, "memory");
