@@ -12,6 +12,7 @@
 #include "uplift/case/build/roles.h"
 #include "uplift/case/build/stages.h"
 #include "uplift/case/build/water.h"
+#include "uplift/case/drawn_parts.h"
 #include "uplift/case/ground/ground.h"
 #include "uplift/case/schema/sections.h"
 #include "uplift/case/shown.h"
@@ -314,9 +315,16 @@ void put_name(const RunSpec& spec, RunPlan& plan) {
   plan.group = spec.group;
 }
 
-int frames_of(const Case& read, const RunSpec& spec, const Model& model) {
+/// The process that holds a model whose matrices are distributed keeps no more of a picture than is drawn: all nodes of all pictures
+/// would take as much as everything else there.
+void choose_pictures(const Case& read, const RunSpec& spec, BuiltCase& built) {
   const int wanted = spec.pictures ? read.input->output.frames : 0;
-  return std::min(wanted, std::max(2, most_pictured / std::max(1, model.full_unknowns())));
+  built.plan.frames = std::min(wanted, std::max(2, most_pictured / std::max(1, built.model.full_unknowns())));
+  built.plan.pictured.clear();
+  if (wanted == 0 || built.model.distributed == nullptr || built.model.space.dimension < 3) return;
+  built.plan.pictured = nodes_drawn_in_space(read, built, drawn_parts(read, built));
+  const int beside = 3 * static_cast<int>(built.plan.stages.size());  // of the beginning and of the largest uplift of every stage
+  built.plan.frames = std::min(wanted, std::max(2, static_cast<int>(most_pictures_in_space(built.plan.pictured.size())) - beside));
 }
 
 }  // namespace
@@ -330,7 +338,7 @@ bool change_steps(const Case& read, const RunSpec& spec, BuiltCase& built) {
     return false;
   }
   put_name(spec, built.plan);
-  built.plan.frames = frames_of(read, spec, built.model);
+  choose_pictures(read, spec, built);
   return true;
 }
 
@@ -376,7 +384,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
   for (std::size_t k = 0; k < built.facts.size(); ++k) plan.is_wall.push_back(k >= built.bases());
   note_divided(built);
   plan.every = read.input->output.every;
-  plan.frames = frames_of(read, spec, built.model);
+  choose_pictures(read, spec, built);
   add_requests(read, names, built);
   add_combined(built);
   if (!spec.stiffness_ratio) add_floors(read, built);

@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "uplift/case/build/model.h"
+#include "uplift/case/mesh/mesh.h"
 #include "uplift/elements/element_entry.h"
+#include "uplift/mesh/sides.h"
 
 namespace uplift {
 namespace {
@@ -80,6 +82,32 @@ DrawnParts drawn_parts(const Case& read, const BuiltCase& built) {
     parts.absorbing.push_back({face.group.name, face.free_field, face.incident.has_value()});
   add_bodies(*read.input, model, parts.bodies);
   return parts;
+}
+
+std::vector<int> nodes_drawn_in_space(const Case& read, const BuiltCase& built, const DrawnParts& parts) {
+  std::set<int> all = parts.nodes();
+  for (int i = 0; i < parts.first_of_mesh; ++i) all.insert(i);
+  std::vector<int> nodes;
+  for (const std::string& group : parts.solids) {
+    const Mesh& mesh = read.mesh->drawn();
+    const Sides sides(mesh, mesh.groups.at(group).cells);
+    for (int cell = 0; cell < std::ssize(sides.cells()); ++cell)
+      for (int side = 0; side < sides.count(cell); ++side) {
+        if (sides.twin(Sides::stride * cell + side) >= 0) continue;
+        sides.nodes_of(mesh, Sides::stride * cell + side, nodes);
+        const Cell type = info(mesh.type(sides.cells()[static_cast<std::size_t>(cell)])).sides[static_cast<std::size_t>(side)];
+        for (int k = 0; k < info(type).corners; ++k) all.insert(parts.first_of_mesh + nodes[static_cast<std::size_t>(k)]);
+      }
+  }
+  for (const BeamLine& beam : built.beams) all.insert(beam.nodes.begin(), beam.nodes.end());
+  for (const int node : {built.top, built.base})
+    if (node >= 0) all.insert(node);
+  return {all.begin(), all.end()};
+}
+
+std::size_t most_pictures_in_space(std::size_t nodes) {
+  constexpr std::size_t numbers = 900'000;
+  return std::max<std::size_t>(12, numbers / (3 * nodes + 1));
 }
 
 }  // namespace uplift

@@ -61,4 +61,10 @@ struct DrawnParts {
 
 DrawnParts drawn_parts(const Case&, const BuiltCase&);
 
+/// Nodes of the drawing of a model in space, ascending: those of the surfaces of solids, of the case, of beams and of rigid bodies.
+std::vector<int> nodes_drawn_in_space(const Case&, const BuiltCase&, const DrawnParts&);
+
+/// Pictures of so many nodes in space that the report shows at most: it stays below about 500 kB.
+std::size_t most_pictures_in_space(std::size_t nodes);
+
 }  // namespace uplift

@@ -79,10 +79,14 @@ namespace {
 /// Those that reach rows from `first` to below `end`.
 EqualCells cells_at(const EqualCells& all, int first, int end) {
   EqualCells some{all.unknowns, {}};
-  for (auto cell = all.rows.begin(); cell != all.rows.end(); cell += all.unknowns)
-    if (std::any_of(cell, cell + all.unknowns, [&](int row) { return row >= first && row < end; }))
-      some.rows.insert(some.rows.end(), cell, cell + all.unknowns);
-  some.rows.shrink_to_fit();
+  const auto each = [&](const auto& take) {
+    for (auto cell = all.rows.begin(); cell != all.rows.end(); cell += all.unknowns)
+      if (std::any_of(cell, cell + all.unknowns, [&](int row) { return row >= first && row < end; })) take(cell);
+  };
+  std::size_t count = 0;
+  each([&](auto) { ++count; });
+  some.rows.reserve(count * static_cast<std::size_t>(all.unknowns));
+  each([&](auto cell) { some.rows.insert(some.rows.end(), cell, cell + all.unknowns); });
   return some;
 }
 
@@ -199,7 +203,8 @@ void Ranks::multiply(std::span<const DistributedTerm> sum, const Vector& x, Vect
 void Ranks::multiply_together(const Order& order, std::span<const DistributedTerm> sum, const Vector* x, Vector* y) const {
   const Shares shares(static_cast<PetscInt>(order.rows), count_);
   const std::vector<KeptTerm> terms = spread_terms(order, sum);
-  const Vector given = spread_vector(order.rows, x);
+  Vector received;
+  const Vector& given = spread_vector(order.rows, x, received);
   Vector product = Vector::Zero(shares.count(rank_));
   for (const KeptTerm& term : terms) product += term.factor * (term.matrix.columns.transpose() * given);
   if (const ScaledCells sum_of_cells = cells_of_sum(terms); sum_of_cells.cells != nullptr) {
@@ -249,11 +254,12 @@ ScaledCells Ranks::cells_of_sum(const std::vector<KeptTerm>& terms) {
   return sum;
 }
 
-/// `vector`: on rank 0.
-Vector Ranks::spread_vector(std::int64_t size, const Vector* vector) const {
-  Vector whole = vector != nullptr ? *vector : Vector(size);
-  MPI_Bcast(whole.data(), static_cast<int>(size), MPI_DOUBLE, 0, ranks_);
-  return whole;
+/// `vector`: on rank 0, where it is not copied; on the others it is received.
+const Vector& Ranks::spread_vector(std::int64_t size, const Vector* vector, Vector& received) const {
+  if (vector == nullptr) received.resize(size);
+  auto* numbers = vector != nullptr ? const_cast<double*>(vector->data()) : received.data();  // MPI: one function sends and receives
+  MPI_Bcast(numbers, static_cast<int>(size), MPI_DOUBLE, 0, ranks_);
+  return vector != nullptr ? *vector : received;
 }
 
 /// The rank's rows of S (sum of terms) S + also.

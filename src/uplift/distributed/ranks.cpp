@@ -370,7 +370,8 @@ SystemOutcome Ranks::set_sum(System& system, const Order& order, const Scaled* m
   const auto rows = static_cast<PetscInt>(order.rows);
   if (order.terms == 0) return system.set(spread_rows(rows, matrix), rows, node);
   const std::vector<KeptTerm> terms = spread_terms(order, matrix != nullptr ? matrix->matrix.there : std::span<const DistributedTerm>());
-  const Vector scale = spread_vector(order.rows, matrix != nullptr ? &matrix->scale : nullptr);
+  Vector received;
+  const Vector& scale = spread_vector(order.rows, matrix != nullptr ? &matrix->scale : nullptr, received);
   ScaledCells cells = cells_of_sum(terms);
   if (cells.cells != nullptr) {
     const double* first = scale.data() + cells.cells->first();

@@ -124,7 +124,7 @@ class Ranks {
   SystemOutcome set_sum(System& system, const Order& order, const Scaled* matrix, const std::vector<int>& node) const;
   LocalRows spread_rows(PetscInt rows, const Scaled* matrix) const;
   std::vector<KeptTerm> spread_terms(const Order& order, std::span<const DistributedTerm> sum) const;
-  Vector spread_vector(std::int64_t size, const Vector* vector) const;
+  const Vector& spread_vector(std::int64_t size, const Vector* vector, Vector& received) const;
   static ScaledCells cells_of_sum(const std::vector<KeptTerm>& terms);
   LocalRows rows_of_sum(const std::vector<KeptTerm>& terms, const Vector& scale, const LocalRows& also) const;
   static LocalRows rows_of(const Scaled& matrix, Index first, Index count);

@@ -29,12 +29,12 @@ class PetscFactor : public FactorWithReach {
   /// An iterative method that does not converge leaves no number: the step that asked fails, and the program says why in the end.
   void solve(const Matrix& b, Matrix& x) const override { solve_to(b, x, 0); }
   void solve_to(const Matrix& b, Matrix& x, double residual) const override {
-    Matrix loads = scale_.asDiagonal() * b;
-    if (Ranks::all().solve(system_, loads, loads, residual).ok())
-      loads.array().colwise() *= scale_.array();
+    if (&x != &b) x = b;
+    x.array().colwise() *= scale_.array();
+    if (Ranks::all().solve(system_, x, x, residual).ok())
+      x.array().colwise() *= scale_.array();
     else
-      loads.setConstant(std::numeric_limits<double>::quiet_NaN());
-    x.swap(loads);
+      x.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   /// (A^-1)_tt of chosen unknowns t.
   SystemOutcome flexibility(const std::vector<int>& chosen, Matrix& entries) const {
@@ -62,10 +62,11 @@ class PetscSplit final : public SplitFactor {
   PetscSplit(std::unique_ptr<const Factor> factor, Index rows, std::vector<int> last, Matrix upper)
       : factor_(std::move(factor)), last_(std::move(last)), upper_(std::move(upper)), rows_(rows) {}
   void forward(const Vector& b, Vector& y) const override {
-    Matrix u;
-    factor_->solve(b, u);
+    Matrix u = b;
+    factor_->solve(u, u);
+    const Vector tail = tail_of(u.col(0));
     y.resize(b.size() + std::ssize(last_));
-    y << u, tail_of(u.col(0));
+    y << u, tail;
   }
   /// `y` of a forward half, or as long as the matrix has rows with nothing but a tail.
   void backward(const Vector& y, Vector& x) const override {
@@ -87,7 +88,7 @@ class PetscSplit final : public SplitFactor {
 
  private:
   Index rows_of_half() const { return rows_ + std::ssize(last_); }
-  Vector tail_of(const Vector& u) const {
+  Vector tail_of(const Eigen::Ref<const Vector>& u) const {
     Vector tail(std::ssize(last_));
     for (Index k = 0; k < tail.size(); ++k) tail[k] = u[last_[static_cast<std::size_t>(k)]];
     upper_.triangularView<upper_triangle>().solveInPlace(tail);

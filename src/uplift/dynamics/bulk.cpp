@@ -229,8 +229,8 @@ void BulkFactor::solve(const Vector& b, Vector& x, BulkWork& work) const {
   }
   work.given.resize(b.size(), 1);
   work.given.col(0) = b;
-  factor_->solve(work.given, work.solved);
-  x = work.solved.col(0);
+  factor_->solve(work.given, work.given);
+  x = work.given.col(0);
 }
 
 void BulkFactor::solve(const Matrix& b, Matrix& x, double residual, LinearCounts& counts) const {

@@ -67,7 +67,7 @@ class Bulk {
 struct BulkWork {
   explicit BulkWork(LinearCounts& of_run) : counts(&of_run) {}
   LinearCounts* counts;
-  Matrix given, solved;  // one column each
+  Matrix given;  // one column
   Vector half;
 };
 

@@ -32,10 +32,10 @@ double interface_blocks(double rows, double touched) {
   return 8 * (rows * r + turned + touched * touched + 3 * r * r);
 }
 
-/// Of the loads of the flexibility with reach: some at once (solved_response.cpp), their answers, and both scaled.
+/// Of the loads of the flexibility with reach: some at once (solved_response.cpp), and the rows of this process of loads and answers.
 double loads_at_once(double unknowns, double touched) {
-  constexpr double numbers = 1 << 20, most = 32;
-  return 4 * 8 * unknowns * std::min(touched, std::clamp(std::floor(numbers / std::max(unknowns, 1.0)), 1.0, most));
+  constexpr double numbers = 1 << 17, most = 32;
+  return 3 * 8 * unknowns * std::min(touched, std::clamp(std::floor(numbers / std::max(unknowns, 1.0)), 1.0, most));
 }
 
 }  // namespace
@@ -70,7 +70,7 @@ BulkCost predict_bulk(const Model& model, const LinearSolver& solver, const Bulk
   const double steps = (use.propagates ? 2 : 1) * use.step_sizes;
   const double blocks = interface_blocks(rows, static_cast<double>(cost.touched));
   cost.interface_bytes = (steps + (use.impacts ? 1 : 0)) * blocks;
-  const double kept = (use.keeps_mass ? cost.mass.bytes : 0) + steps * cost.step.bytes + cost.interface_bytes + pair + 25 * 8 * n;
+  const double kept = (use.keeps_mass ? cost.mass.bytes : 0) + steps * cost.step.bytes + cost.interface_bytes + pair + 20 * 8 * n;
   double more = std::max(kept, (steps > 1 ? kept : cost.step.bytes) + cost.step.working_bytes);
   // a factor of M that is kept is made after that of the first step size, one for the acceleration of the beginning alone before it
   more = std::max(more, (use.keeps_mass ? cost.step.bytes : 0) + cost.mass.bytes + cost.mass.working_bytes);

@@ -64,12 +64,13 @@ std::vector<int> colours(const std::vector<Vec3>& centre, double distance) {
 
 /// V A^-1 b, some columns at once so that little is kept. `residual`: see FactorWithReach.
 Matrix answers(const BulkFactor& factor, const Sparse& b, const Sparse& loads, double residual, LinearCounts& counts) {
-  constexpr Index most_numbers = 1 << 20;
+  constexpr Index most_numbers = 1 << 17;
   const Index block = std::clamp<Index>(most_numbers / std::max<Index>(b.rows(), 1), 1, 32);
   Matrix result(loads.cols(), b.cols()), x;
   for (Index first = 0; first < b.cols(); first += block) {
     const Index count = std::min(block, b.cols() - first);
-    factor.solve(Matrix(b.middleCols(first, count)), x, residual, counts);
+    x = b.middleCols(first, count);
+    factor.solve(x, x, residual, counts);
     result.middleCols(first, count).noalias() = loads.transpose() * x;
   }
   return result;
@@ -168,8 +169,8 @@ void SolvedResponse::forget() {
 void SolvedResponse::press(const Vector& force, double residual, Vector& increment) {
   work_.given.resize(b_.cols(), 1);
   work_.given.col(0).noalias() = b_.transpose() * force;
-  factor_.solve(work_.given, work_.solved, residual, *work_.counts);
-  increment -= work_.solved.col(0);
+  factor_.solve(work_.given, work_.given, residual, *work_.counts);
+  increment -= work_.given.col(0);
 }
 
 /// Columns of length one: the changes become smaller from try to try.
@@ -197,9 +198,9 @@ Outcome SolvedResponse::solve(const Vector& right, const Vector& opening, const 
   constexpr double tolerance = 1e-10, least = 1e-12, round_off = 1e-14, of_motion = 1e-15;
   constexpr int most_tries = 60;
   const ContactModel& model = *problem.model;
-  load_ = right;
-  load_.noalias() -= b_.transpose() * force_;
-  factor_.solve(load_, increment, work_);
+  increment = right;
+  increment.noalias() -= b_.transpose() * force_;
+  factor_.solve(increment, increment, work_);
   problem.free_opening = opening + b_ * increment;
   problem.free_opening += model.factor * (model.factor.transpose() * force_).eval();
   last_rest_.resize(0);

@@ -38,7 +38,7 @@ class SolvedResponse {
   Matrix c_;
   Vector force_;                            // p - D opening of the last solution [N]
   std::vector<Vector> openings_, remains_;  // changes of c and of g - o from one try to the next, the oldest first
-  Vector last_opening_, last_rest_, load_;
+  Vector last_opening_, last_rest_;
 };
 
 }  // namespace uplift

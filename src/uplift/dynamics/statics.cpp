@@ -361,7 +361,7 @@ StaticOutcome LoadSteps::run() {
   bool all = go_on();
   if (!all && outcome_.failed && b_.rows() > 0 && !softens_ && !yielding_.any()) all = retry_with_softer_joint();
   state_.velocity.setZero();
-  state_.acceleration.setZero();
+  state_.acceleration.setZero(state_.velocity.size());  // the path average has left none
   state_.filter = {};
   outcome_.converged = all;
   if (!outcome_.failed) outcome_.why.clear();  // of a load step that was halved

@@ -135,7 +135,8 @@ void Stepper::acceleration(Vector& result) const {
   }
   result.resize(bulk_.unknowns);
   if (averages_acceleration() && counts_.steps > 0) {
-    result = (now_.velocity - velocity_before_) / options_.step;
+    const bool divided = last_step_ > 0 && last_step_ < options_.step;
+    result = (now_.velocity - (divided ? velocity_before_ : next_.velocity)) / options_.step;
     return;
   }
   balance_.resize(bulk_.unknowns);
@@ -308,7 +309,7 @@ bool Stepper::try_step(Level& level) {
   small::copy(solution.opening.size(), solution.opening.data(), next_.opening.data());
   small::copy(solution.now.size(), solution.now.data(), next_.history.data());
   if (newton_ != nullptr) next_.bulk_history = plastic_next_.history;
-  products(next_.displacement, next_.velocity, stiff_next_, momentum_next_);
+  products(next_.displacement, next_.velocity, stiff_end(), momentum_end());
   if (path_) {
     const double to_mean = 1 / last_->model->scale;
     for (const Block& block : last_->model->blocks)
@@ -356,10 +357,10 @@ bool Stepper::substep(int halving) {
     book_energies(now);
     now_.swap(next_);
     force_now_.swap(force_next_);
-    stiff_now_.swap(stiff_next_);
-    momentum_now_.swap(momentum_next_);
     std::swap(kick_, kick_next_);
     if (filtered_) {
+      stiff_now_.swap(stiff_next_);
+      momentum_now_.swap(momentum_next_);
       filtered_stiff_.swap(work_);
       filtered_momentum_.swap(work2_);
     }
@@ -379,12 +380,12 @@ bool Stepper::substep(int halving) {
     return false;
   }
   ++counts_.retries;
+  if (path_ && halving == 0) velocity_before_ = now_.velocity;
   return substep(halving + 1) && substep(halving + 1);
 }
 
 bool Stepper::advance() {
   iterations_before_ = counts_.iterations;
-  if (path_) small::copy(velocity_before_.size(), now_.velocity.data(), velocity_before_.data());
   if (!substep(0)) return false;
   now_.time = start_time_ + static_cast<double>(++counts_.steps) * options_.step;  // not summed: no round-off grows in a long run
   return true;

@@ -78,8 +78,8 @@ class Stepper {
           LinearCounts& counts);
   ~Stepper();
   /// Takes over displacement, velocity, opening and history; the initial acceleration follows from the balance (the path average
-  /// needs none: its state has zero). With the ledger of a stage before, energies go on counting, and so does its acceleration when it is
-  /// the same scheme's.
+  /// needs none: that of its state is empty). With the ledger of a stage before, energies go on counting, and so does its acceleration when
+  /// it is the same scheme's.
   void start(State state, const Ledger* before = nullptr);
   Ledger ledger() const { return {energies_, initial_energy_, largest_external_, !path_, kick_.step > 0 ? kick_ : Kick()}; }
   /// Goes on where another Stepper of the same stage has been: takes the place of `start`. After `reenter` of that one both take the same
@@ -129,6 +129,9 @@ class Stepper {
   void move_rates(double time);
   /// ku = K u and mv = M v, in one pass where the bulk is large.
   void products(const Vector& u, const Vector& v, Vector& ku, Vector& mv) const;
+  /// K u and M v at the end of the step, once it is solved.
+  Vector& stiff_end() { return filtered_ ? stiff_next_ : stiff_now_; }
+  Vector& momentum_end() { return filtered_ ? momentum_next_ : momentum_now_; }
   void right_hand_side(const Level& level);
   Vector stiffness_for_massless() const;
   double filter_shrink(const Level& level) const;
@@ -206,11 +209,12 @@ class Stepper {
   PlasticState plastic_now_, plastic_next_;
   std::unique_ptr<JointFilter> joint_filter_;  // null without filters or interfaces
   Vector filtered_stiff_, filtered_momentum_;  // K d_u, M d_v of now_
-  Vector velocity_before_;                     // at the beginning of the nominal step; path average
+  Vector velocity_before_;                     // at the beginning of the nominal step, of its last one that was divided; path average
   State now_, next_;
-  Vector force_now_, force_next_, stiff_now_, stiff_next_, momentum_now_, momentum_next_;  // f, K u, M v
-  mutable Vector product_, balance_;                                                       // work space of forces_at and acceleration
-  Vector right_, increment_, work_, work2_, damped_, contact_, impulse_;
+  Vector force_now_, force_next_, stiff_now_, momentum_now_;  // f, K u, M v
+  Vector stiff_next_, momentum_next_;                         // only filters ask for both ends: empty without them
+  mutable Vector product_, balance_;                          // work space of forces_at and acceleration
+  Vector right_, increment_, work_, work2_, contact_, impulse_;
   ImpactScratch impact_scratch_;
   Vector impact_impulse_;     // rows: momentum that impacts transferred in the step [N s]
   double closed_gap_ = 1e-9;  // m: what closes from a smaller gap is no impact
@@ -223,7 +227,7 @@ class Stepper {
   Vector velocity_free_;                   // before an impact
   Kick kick_, kick_next_;                  // of impacts at the beginning and at the end of the step
   Kick unkicked_;                          // acceleration and force of now_ without it
-  Vector lag_;                             // free unknowns [N]: M a of the beginning with it, less the forces
+  Vector lag_;                             // free unknowns [N]: M a of the beginning with it, less the forces; empty without impacts
   std::unique_ptr<CoulombRates> coulomb_;  // null without friction, and with other rules than project_hold
   FrictionOfImpacts friction_;
   double friction_step_ = 0;  // J: work of the friction of constraints in the step

@@ -140,16 +140,17 @@ void Stepper::hold_initial_acceleration() {
 /// Work space of the size of the bulk and of the interfaces.
 void Stepper::make_room() {
   const Eigen::Index n = bulk_.unknowns;
-  for (Vector* v : {&force_now_, &force_next_, &stiff_now_, &stiff_next_, &momentum_now_, &momentum_next_, &right_, &increment_, &work_,
-                    &work2_, &damped_, &lag_})
-    v->setZero(n);
+  for (Vector* v : {&force_now_, &force_next_, &stiff_now_, &momentum_now_, &right_, &increment_, &work_, &work2_}) v->setZero(n);
+  if (filtered_) stiff_next_.setZero(n), momentum_next_.setZero(n);
   contact_.setZero(b_.rows());
   impulse_.setZero(b_.rows());
-  if (impacts_)
+  if (impacts_) {
+    lag_.setZero(n);
     for (Kick* kick : {&kick_, &kick_next_, &unkicked_}) {
       kick->acceleration.setZero(n);
       kick->force.setZero(b_.rows());
     }
+  }
 }
 
 void Stepper::set_kick(const Ledger& from) {
@@ -166,7 +167,7 @@ void Stepper::start(State state, const Ledger* before) {
   const Eigen::Index n = bulk_.unknowns;
   make_room();
   if (path_) {
-    now_.acceleration.setZero(n);
+    now_.acceleration.resize(0);
   } else if (before == nullptr || !before->acceleration) {
     if (gap_moves_) move_rates(now_.time);
     release_parting();
@@ -203,7 +204,7 @@ void Stepper::start(State state, const Ledger* before) {
 
 /// What follows from the present state: filtered products, forces, products with the matrices, energy of the interfaces.
 void Stepper::follow_state() {
-  if (path_) velocity_before_ = now_.velocity;
+  if (velocity_before_.size() > 0) velocity_before_ = now_.velocity;
   if (filtered_) begin_filters();
   next_ = now_;
   force_at(now_.time, force_now_);

@@ -10,7 +10,7 @@ namespace uplift {
 void Stepper::book_energies(const Level& level) {
   const Eigen::Index n = bulk_.unknowns;
   const double *du = increment_.data(), *f0 = force_now_.data(), *f1 = force_next_.data();
-  const double *u = next_.displacement.data(), *ku = stiff_next_.data(), *v = next_.velocity.data(), *mv = momentum_next_.data();
+  const double *u = next_.displacement.data(), *ku = stiff_end().data(), *v = next_.velocity.data(), *mv = momentum_end().data();
   double external = 0, strain = 0, kinetic = 0;
   small::with_size(n, [=, &external, &strain, &kinetic](auto count) {
     double sums[3] = {};
@@ -30,8 +30,8 @@ void Stepper::book_energies(const Level& level) {
       for (Eigen::Index i = 0; i < n; ++i) work_[i] = du[i] / level.step;
     else
       for (Eigen::Index i = 0; i < n; ++i) work_[i] = 0.5 * (now_.velocity[i] + next_.velocity[i]);
-    bulk_.damping.multiply(work_, damped_);
-    energies_.damping += small::dot(n, damped_.data(), du);
+    bulk_.damping.multiply(work_, work2_);
+    energies_.damping += small::dot(n, work2_.data(), du);
   }
   if (kick_.step > 0) impact_loss_ -= 0.5 * small::dot(n, lag_.data(), du);
   energies_.kinetic = 0.5 * kinetic;

@@ -107,13 +107,13 @@ void Stepper::apply_impact(Level& level) {
   data.step = level.step;
   data.velocity_weight = velocity_weight(level);
   data.acceleration_weight = (1 - options_.scheme.alpha_f) / (1 - options_.scheme.alpha_m);
-  const double before = 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
+  const double before = 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_end().data());
   velocity_free_ = next_.velocity;
   closing_ = gap_closes();
   const bool with_friction = apply_rule(level, data);
   std::swap(data.tangents, tangents_);
-  bulk_.mass.multiply(next_.velocity, momentum_next_);
-  impact_loss_ += before - 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_next_.data());
+  bulk_.mass.multiply(next_.velocity, momentum_end());
+  impact_loss_ += before - 0.5 * small::dot(next_.velocity.size(), next_.velocity.data(), momentum_end().data());
   if (gap_moves_) {  // what moving supports put in by the impulses
     const double work = impulse_.dot(moved_velocity_);
     impact_loss_ += work, energies_.external += work;

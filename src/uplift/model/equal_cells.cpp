@@ -88,30 +88,32 @@ EqualElements find_equal_elements(Space space, const std::vector<Node>& nodes, c
   Classes classes(nodes);
   EqualElements found;
   std::vector<int> rows;
+  const auto find_rows = [&](const Element& element) {  // false: not of all unknowns
+    rows.clear();
+    bool simple = true;
+    for (const int node : element.nodes())
+      for (int i = 0; i < element.unknowns_per_node(); ++i)
+        simple = simple && find_row(expansion, space.unknowns() * node + i, rows.emplace_back());
+    return simple;
+  };
   for (std::size_t e = 0; e < elements.size(); ++e) {
     const auto* solid = dynamic_cast<const Solid*>(elements[e].get());
     if (solid == nullptr || !solid->is_whole()) continue;
-    rows.clear();
-    bool simple = true;
-    for (const int node : solid->nodes())
-      for (int i = 0; i < solid->unknowns_per_node(); ++i)
-        simple = simple && find_row(expansion, space.unknowns() * node + i, rows.emplace_back());
-    if (!simple || !all_different(rows) || std::ranges::all_of(rows, [](int row) { return row < 0; })) continue;
+    if (!find_rows(*solid) || !all_different(rows) || std::ranges::all_of(rows, [](int row) { return row < 0; })) continue;
     const std::size_t number = classes.class_of(*solid);
-    if (number >= found.classes.size()) {
-      found.classes.resize(number + 1), found.cells.resize(number + 1);
-      found.cells[number].unknowns = static_cast<int>(rows.size());
-    }
+    if (number >= found.classes.size()) found.classes.resize(number + 1);
     found.classes[number].push_back(static_cast<int>(e));
-    found.cells[number].rows.insert(found.cells[number].rows.end(), rows.begin(), rows.end());
   }
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < found.classes.size(); ++k) {
-    if (std::ssize(found.classes[k]) < least_equal) continue;
-    if (kept != k) found.classes[kept] = std::move(found.classes[k]), found.cells[kept] = std::move(found.cells[k]);
-    ++kept;
+  std::erase_if(found.classes, [](const std::vector<int>& one) { return std::ssize(one) < least_equal; });
+  for (const std::vector<int>& one : found.classes) {  // the rows are many: not before their number is known
+    EqualCells& cells = found.cells.emplace_back();
+    for (const int element : one) {
+      find_rows(*elements[static_cast<std::size_t>(element)]);
+      cells.unknowns = static_cast<int>(rows.size());
+      cells.rows.reserve(rows.size() * one.size());
+      cells.rows.insert(cells.rows.end(), rows.begin(), rows.end());
+    }
   }
-  found.classes.resize(kept), found.cells.resize(kept);
   found.among.assign(elements.size(), 0);
   for (const std::vector<int>& one : found.classes)
     for (const int element : one) found.among[static_cast<std::size_t>(element)] = 1;

@@ -10,22 +10,27 @@
 
 namespace uplift {
 
-/// The balanced motion is kept on the free unknowns: there are twice as many full ones in a mesh of solids.
+/// The balanced motion is kept on the free unknowns: there are twice as many full ones in a mesh of solids. Of an instant that is summed
+/// up at once it is not copied.
 struct EquilibriumCheck::Snapshot {
   struct Motion {
-    Vector free;
-    std::vector<double> prescribed;  // of each prescribed motion of the model, for a shape of 1
+    double (StepBalance::*part)(Index) const;
+    Vector free;  // empty: `balance` has it
+    const StepBalance* balance = nullptr;
+    std::vector<double> prescribed = {};  // of each prescribed motion of the model, for a shape of 1
+    /// Of a free unknown.
+    double of_free(Index unknown) const { return balance != nullptr ? (balance->*part)(unknown) : free[unknown]; }
     /// Of a full unknown.
     double at(const Model& model, Index unknown) const {
       double sum = 0;
-      for (Sparse::InnerIterator entry(model.expansion, unknown); entry; ++entry) sum += entry.value() * free[entry.row()];
+      for (Sparse::InnerIterator entry(model.expansion, unknown); entry; ++entry) sum += entry.value() * of_free(entry.row());
       for (std::size_t k = 0; k < prescribed.size(); ++k) sum += prescribed[k] * model.motions[k].shape[unknown];
       return sum;
     }
   };
-  Motion displacement, velocity, acceleration;
+  Motion displacement{&StepBalance::displacement, {}}, velocity{&StepBalance::velocity, {}}, acceleration{&StepBalance::acceleration, {}};
   Vector joint;
-  Vector unbalanced;  // M a + C v + K u + B^T p - f, full unknowns; before the elements: -f
+  Vector unbalanced;  // M a + C v + K u + B^T p - f, full unknowns; before the elements: -f. Held forces are part of f
   Vector yielding;
   Equilibrium::Instant sums;
 };
@@ -71,11 +76,13 @@ void EquilibriumCheck::note(const StepBalance& balance) {
   const Index free = model.free(), rows = model.rows();
   Snapshot at;
   at.sums.time = balance.time();
-  for (Snapshot::Motion* motion : {&at.displacement, &at.velocity, &at.acceleration}) motion->free.resize(free);
-  for (Index i = 0; i < free; ++i) {
-    at.displacement.free[i] = balance.displacement(i);
-    at.velocity.free[i] = balance.velocity(i);
-    at.acceleration.free[i] = balance.acceleration(i);
+  for (Snapshot::Motion* motion : {&at.displacement, &at.velocity, &at.acceleration}) {
+    if (at_once_) {
+      motion->balance = &balance;
+      continue;
+    }
+    motion->free.resize(free);
+    for (Index i = 0; i < free; ++i) motion->free[i] = (balance.*motion->part)(i);
   }
   at.joint.resize(rows);
   for (Index i = 0; i < rows; ++i) at.joint[i] = balance.force(i);
@@ -101,16 +108,20 @@ void EquilibriumCheck::note(const StepBalance& balance) {
   if (const PlasticBulk yielding(model); yielding.any())
     at.yielding =
         (1 - begin) * yielding.state(balance.after().bulk_history).full + begin * yielding.state(balance.before().bulk_history).full;
-  at.unbalanced = -applied;
-  if (has_held())
-    for (Index i = 0; i < free; ++i) applied[model.kept[static_cast<std::size_t>(i)]] += (*stage_->held)[i];
+  if (stage_->held != nullptr && stage_->held->size() > 0)
+    for (Index i = 0; i < free; ++i) {
+      const int unknown = model.kept[static_cast<std::size_t>(i)];
+      const double held = (*stage_->held)[i];
+      applied[unknown] += held;
+      // the weight on released supports cancels what they have borne: at rest every sum is round-off
+      if (!model.space.is_rotation(model.space.index_of(unknown)))
+        at.sums.largest_reaction = std::max(at.sums.largest_reaction, std::abs(held));
+    }
   sum_up(applied, 1, at.sums.applied);
+  at.unbalanced.swap(applied);
+  at.unbalanced *= -1;
   snapshots_.push_back(std::move(at));
-  if (at_once_) applied.resize(0), balance_snapshots();
-}
-
-bool EquilibriumCheck::has_held() const {
-  return stage_->held != nullptr && stage_->held->size() > 0;
+  if (at_once_) balance_snapshots();
 }
 
 void EquilibriumCheck::sum_up(const Vector& forces, double sign, Equilibrium::Sum& sum) const {
@@ -147,9 +158,9 @@ void EquilibriumCheck::add_elements() {
     }
   }
   for (Snapshot& at : snapshots_) {  // what no other force asks for
-    at.acceleration = {};
-    if (stage_->second_order == nullptr) at.displacement = {};
-    if (model.assembly.modal_damping.cols() == 0) at.velocity = {};
+    at.acceleration.free.resize(0);
+    if (stage_->second_order == nullptr) at.displacement.free.resize(0);
+    if (model.assembly.modal_damping.cols() == 0) at.velocity.free.resize(0);
   }
 }
 
@@ -159,15 +170,6 @@ void EquilibriumCheck::add_forces(const ForceModel& forces, Snapshot& at) const 
     at.unbalanced += internal;
     sum_up(internal, -1, sum);
   };
-  if (has_held())
-    for (Index i = 0; i < model.free(); ++i) {
-      const int unknown = model.kept[static_cast<std::size_t>(i)];
-      const double held = (*stage_->held)[i];
-      at.unbalanced[unknown] -= held;
-      // the weight on released supports cancels what they have borne: at rest every sum is round-off
-      if (!model.space.is_rotation(model.space.index_of(unknown)))
-        at.sums.largest_reaction = std::max(at.sums.largest_reaction, std::abs(held));
-    }
   if (model.assembly.b.rows() > 0) put(model.assembly.b.transpose() * at.joint, at.sums.joint);
   if (stage_->second_order != nullptr) {
     Vector displacement(model.full_unknowns());
@@ -176,7 +178,9 @@ void EquilibriumCheck::add_forces(const ForceModel& forces, Snapshot& at) const 
   }
   if (at.yielding.size() > 0) put(at.yielding, at.sums.internal);
   if (model.assembly.modal_damping.cols() > 0) {
-    const Vector damped = model.assembly.modal_damping * at.velocity.free;
+    Vector velocity(model.free());
+    for (Index i = 0; i < velocity.size(); ++i) velocity[i] = at.velocity.of_free(i);
+    const Vector damped = model.assembly.modal_damping * velocity;
     Vector full = Vector::Zero(model.full_unknowns());
     for (Index i = 0; i < damped.size(); ++i) full[model.kept[static_cast<std::size_t>(i)]] = damped[i];
     put(full, at.sums.damping);

@@ -49,7 +49,6 @@ class EquilibriumCheck {
   void add_elements();
   void add_forces(const ForceModel& forces, Snapshot& at) const;
   void balance_snapshots();
-  bool has_held() const;
   void sum_up(const Vector& forces, double sign, Equilibrium::Sum& sum) const;
 
   std::unique_ptr<const ForceStage> stage_;

@@ -349,8 +349,16 @@ void Recorder::complete_peak() {
   peak_coordinates_.resize(0);
 }
 
-/// Of all unknowns.
+/// Of all unknowns, or of those of the pictured nodes.
 Vector Recorder::displacement_at(double time, double load_factor, const Vector& coordinates) const {
+  if (!plan_.pictured.empty()) {
+    const int each = model_.space.unknowns();
+    Vector displacement(each * std::ssize(plan_.pictured));
+    for (Index i = 0; i < displacement.size(); ++i)
+      displacement[i] = model_.full(each * plan_.pictured[static_cast<std::size_t>(i / each)] + static_cast<int>(i % each), coordinates, 0,
+                                    {time, load_factor});
+    return displacement;
+  }
   Vector displacement = model_.reduction * coordinates;
   for (const PrescribedMotion& motion : model_.motions) displacement += motion.shape * (load_factor * motion.function->value(time));
   return displacement;

@@ -151,6 +151,7 @@ struct RunPlan {
   std::vector<std::vector<int>> bases;  // nodes of the upper side of every interface, whose settlement and tilt are kept; may be empty
   bool expected_to_fail = false;
   int frames = 0;                                 // pictures kept for the animation (0: none)
+  std::vector<int> pictured;                      // nodes whose motion they keep, ascending; empty: all
   Vector initial_displacement, initial_velocity;  // free unknowns; empty: zero
   double oracle_tolerance = 0;  // > 0: every condensed step is also taken by the oracle; a larger relative difference fails it
 };
@@ -188,7 +189,7 @@ struct Counts {
 
 struct Frame {
   double time = 0;
-  Vector displacement;           // full unknowns
+  Vector displacement;           // full unknowns of all nodes, or of those of RunPlan::pictured, one node after another
   Vector opening, pressure;      // normal rows of all interfaces [m], [Pa] compression > 0
   std::vector<double> uplifted;  // share of the area of every interface
 };

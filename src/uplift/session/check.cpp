@@ -133,7 +133,8 @@ double pictures(const RunPlan& plan) {
 
 /// What the pictures of all runs of `uplift run` take until the report is written.
 double pictures_bytes(const Case& read, const BuiltCase& built) {
-  double numbers = built.model.full_unknowns();
+  const std::vector<int>& pictured = built.plan.pictured;
+  double numbers = pictured.empty() ? built.model.full_unknowns() : built.model.space.unknowns() * static_cast<double>(pictured.size());
   for (const Interface& interface : built.model.interfaces) numbers += 2 * interface.rows();
   return 8 * numbers * pictures(built.plan) * static_cast<double>(runs_of_case(read).size());
 }

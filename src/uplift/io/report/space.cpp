@@ -55,16 +55,8 @@ struct DrawnInSpace {
 DrawnInSpace drawn_in_space(const Case& read, const BuiltCase& built) {
   DrawnInSpace drawn;
   drawn.parts = drawn_parts(read, built);
-  std::set<int> nodes = drawn.parts.nodes();
-  for (int i = 0; i < drawn.parts.first_of_mesh; ++i) nodes.insert(i);
-  for (const std::string& group : drawn.parts.solids) {
-    drawn.surfaces.push_back(surface_of(read.mesh->drawn(), group));
-    for (const int node : drawn.surfaces.back().triangles) nodes.insert(drawn.parts.first_of_mesh + node);
-  }
-  for (const BeamLine& beam : built.beams) nodes.insert(beam.nodes.begin(), beam.nodes.end());
-  for (const int node : {built.top, built.base})
-    if (node >= 0) nodes.insert(node);
-  drawn.nodes.assign(nodes.begin(), nodes.end());
+  drawn.nodes = nodes_drawn_in_space(read, built, drawn.parts);
+  for (const std::string& group : drawn.parts.solids) drawn.surfaces.push_back(surface_of(read.mesh->drawn(), group));
   return drawn;
 }
 

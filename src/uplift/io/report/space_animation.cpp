@@ -9,7 +9,6 @@
 namespace uplift {
 namespace {
 
-constexpr std::size_t most_numbers = 900'000;  // of all frames of a run, about 500 kB
 // Levels from zero to the largest value. The largest displacement is drawn about 60 pixels long: one level is far below a pixel.
 constexpr int levels_of_displacements = 4095, levels_of_points = 32767;
 
@@ -72,7 +71,7 @@ void write_points(JsonWriter& json, std::string_view key, const BuiltCase& built
 
 /// So many frames, evenly chosen, that the report stays small; the one of the largest uplift is among them.
 std::vector<const Frame*> chosen_frames(const Model& model, const RunResult& result, std::size_t nodes) {
-  const std::size_t most = std::max<std::size_t>(12, most_numbers / (3 * nodes + 1));
+  const std::size_t most = most_pictures_in_space(nodes);
   const std::size_t every = std::max<std::size_t>((result.frames.size() + most - 1) / most, 1);
   const auto share = [&](const Frame& frame) { return uplifted_share(model, frame); };
   const Frame* peak = &*std::ranges::max_element(result.frames, {}, share);
@@ -83,19 +82,23 @@ std::vector<const Frame*> chosen_frames(const Model& model, const RunResult& res
 }
 
 /// Displacements (or rotations) of nodes, three numbers each.
-std::vector<double> motion_of(const Space& space, const Frame& frame, std::span<const int> nodes, bool rotation) {
+std::vector<double> motion_of(const BuiltCase& built, const Frame& frame, std::span<const int> nodes, bool rotation) {
+  const Space space = built.model.space;
+  const std::vector<int>& pictured = built.plan.pictured;
   std::vector<double> numbers;
-  for (const int node : nodes)
-    for (int k = 0; k < 3; ++k) numbers.push_back(frame.displacement[space.unknowns() * node + k + (rotation ? space.dimension : 0)]);
+  for (const int node : nodes) {
+    const Index place = pictured.empty() ? node : std::ranges::lower_bound(pictured, node) - pictured.begin();
+    for (int k = 0; k < 3; ++k) numbers.push_back(frame.displacement[space.unknowns() * place + k + (rotation ? space.dimension : 0)]);
+  }
   return numbers;
 }
 
-void write_displacements(JsonWriter& json, const Space& space, const std::vector<const Frame*>& frames, const std::vector<int>& nodes) {
+void write_displacements(JsonWriter& json, const BuiltCase& built, const std::vector<const Frame*>& frames, const std::vector<int>& nodes) {
   double largest = 0;
-  for (const Frame* frame : frames) largest = std::max(largest, largest_of(motion_of(space, *frame, nodes, false)));
+  for (const Frame* frame : frames) largest = std::max(largest, largest_of(motion_of(built, *frame, nodes, false)));
   json.key("displacement");
   QuantisedFrames quantised(json, largest, levels_of_displacements, 3, std::numeric_limits<double>::infinity());
-  for (const Frame* frame : frames) quantised.add(motion_of(space, *frame, nodes, false));
+  for (const Frame* frame : frames) quantised.add(motion_of(built, *frame, nodes, false));
   quantised.end();
 }
 
@@ -103,18 +106,17 @@ void write_displacements(JsonWriter& json, const Space& space, const std::vector
 
 void write_space_animation(JsonWriter& json, const DrawnParts& parts, const ReportRun& run, const std::vector<int>& nodes) {
   const BuiltCase& built = *run.built;
-  const Space space = built.model.space;
   const std::vector<const Frame*> frames = chosen_frames(built.model, *run.result, nodes.size());
   json.begin_object().member("run", run.result->label).key("time").begin_array();
   for (const Frame* frame : frames) json.value(frame->time);
   json.end_array();
   write_uplifted(json, built.model, frames);
-  write_displacements(json, space, frames, nodes);
+  write_displacements(json, built, frames, nodes);
   json.key("rotation").begin_object();
   for (const DrawnParts::Body& body : parts.bodies) {
     if (body.foundation) continue;
     json.key(built.facts[body.interface].body).begin_array();
-    for (const Frame* frame : frames) json.numbers(motion_of(space, *frame, {&body.node, 1}, true));
+    for (const Frame* frame : frames) json.numbers(motion_of(built, *frame, {&body.node, 1}, true));
     json.end_array();
   }
   json.end_object();
