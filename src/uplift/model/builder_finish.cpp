@@ -12,10 +12,12 @@ namespace uplift {
 
 namespace {
 
-Vector translation(Space space, const Vec3& direction, Index unknowns) {
-  Vector full = Vector::Zero(unknowns);
-  for (Index i = 0; i < unknowns; i += space.unknowns()) full.segment(i, space.dimension) = direction.head(space.dimension);
-  return full;
+/// M d, full unknowns, for a translation d of everything. Vectors of all unknowns are large: none outlives its use.
+Vector times_translation(const ElementSum& mass, Space space, const Vec3& direction, Index unknowns) {
+  Matrix full = Matrix::Zero(unknowns, 1);
+  for (Index i = 0; i < unknowns; i += space.unknowns()) full.col(0).segment(i, space.dimension) = direction.head(space.dimension);
+  mass.times(full).swap(full);
+  return full.col(0);
 }
 
 }  // namespace
@@ -79,23 +81,23 @@ void ModelBuilder::make_drives(Model& model, const Matrix& motion_shapes) const 
   const Index unknowns = model.full_unknowns();
   const ElementSum mass = sum(&Local::mass);
   const auto one = std::make_shared<const One>();
-  const auto add = [&](std::string name, const Vector& pattern, std::shared_ptr<const TimeFunction> function, bool dead) {
+  const auto add = [&](std::string name, Vector pattern, std::shared_ptr<const TimeFunction> function, bool dead) {
     const bool constant = function->is_one();
     model.time_loads.push_back(
         {std::move(name), model.reduction.transpose() * pattern, std::move(function), TimeLoad::Order::value, dead, constant});
-    model.assembly.loads.push_back(pattern);
+    model.assembly.loads.push_back(std::move(pattern));
   };
-  if (!gravity_.isZero()) add("gravity", mass.times(translation(space_, gravity_, unknowns)), one, true);
+  if (!gravity_.isZero()) add("gravity", times_translation(mass, space_, gravity_, unknowns), one, true);
   for (std::size_t k = 0; k < interfaces_.size(); ++k)
     if (std::ranges::any_of(interfaces_[k].points, [](const JointPoint& point) { return point.water != 0; }))
       add("water pressure in " + interfaces_[k].name, water_load(model, k), one, true);
   for (const Load& load : loads_) {
     Vector pattern = Vector::Zero(unknowns);
     for (const auto& [unknown, value] : load.pattern) pattern[unknown] += value;
-    add(load.name, pattern, load.function ? load.function : one, load.dead);
+    add(load.name, std::move(pattern), load.function ? load.function : one, load.dead);
   }
   for (const GroundAcceleration& ground : grounds_)
-    add(ground.name, -mass.times(translation(space_, ground.direction, unknowns)), ground.function, false);
+    add(ground.name, times_translation(mass, space_, -ground.direction, unknowns), ground.function, false);
   for (const TableOfLoads& table : tables_) {
     Sparse pattern(unknowns, table.functions);
     pattern.setFromTriplets(table.pattern.begin(), table.pattern.end());
