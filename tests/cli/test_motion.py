@@ -95,7 +95,7 @@ class Records(CliTest):
             (("--generate", "rg_1_60", "pga=3", "step=0.01", "--step", "0.02"), "step: expected one value, found two"),
             (("--generate", "rg_1_60", "pga=3", "--unit", "g"), "no options for files"),
             (("quake.csv", "--frequencies", "1,0"), 'frequencies > 0 Hz with commas, FROM:TO:COUNT or rg_1_122, found "0"'),
-            (("quake.csv", "--frequencies", "5"), "found one"),
+            (("quake.csv", "--frequencies", "5"), "a single one"),
             (("quake.csv", "--frequencies", "9:1:5"), 'found "9:1:5"'),
         ):
             done = self.uplift("motion", *words, expect=2)
