@@ -1,5 +1,6 @@
 """The Python package on the library: python3 tests/python/test_uplift.py PROGRAM LIBRARY. Needs NumPy."""
 
+import ctypes
 import gc
 import json
 import os
@@ -119,11 +120,18 @@ class Cases(unittest.TestCase):
         subprocess.run([sys.executable, str(ROOT / "scripts" / "make_python.py"), PROGRAM, "--check"], check=True)
 
 
+def same_kernels():
+    """The environment of a program with the kernels of the OpenBLAS that NumPy has loaded here, before uplift could choose."""
+    blas = ctypes.CDLL("libopenblas.so.0")
+    blas.openblas_get_corename.restype = ctypes.c_char_p
+    return {**os.environ, "OPENBLAS_CORETYPE": blas.openblas_get_corename().decode()}
+
+
 class Runs(unittest.TestCase):
     def test_results_are_those_of_the_program_bit_for_bit(self):
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / "out"
-            subprocess.run([PROGRAM, "run", str(ROOT / "examples/05_bridge_pier"), "-q", "-o", str(out)], check=True)
+            subprocess.run([PROGRAM, "run", str(ROOT / "examples/05_bridge_pier"), "-q", "-o", str(out)], check=True, env=same_kernels())
             run = up.load(ROOT / "examples/05_bridge_pier").run()
             run.write(pathlib.Path(folder) / "mine")
             self.assertEqual((out / "histories.csv").read_bytes(), (pathlib.Path(folder) / "mine" / "histories.csv").read_bytes())
