@@ -23,7 +23,7 @@ void InterfaceEnergy::update(const std::vector<Block>& blocks, const Vector& ope
   if (changed) dissipated = lost;
 }
 
-double friction_work(const std::vector<Block>& blocks, const State& from, const State& to) {
+double friction_work(const std::vector<Block>& blocks, const State& from, const State& to, double end_share) {
   double total = 0;
   for (const Block& block : blocks) {
     if (block.cone == nullptr || !(block.cone->friction() > 0)) continue;
@@ -31,7 +31,7 @@ double friction_work(const std::vector<Block>& blocks, const State& from, const 
     for (int i = 0; i < n; ++i) {
       double work = 0;
       for (int row = block.first + i; row < block.first + block.batch.normal(); row += n)
-        work += 0.5 * (from.force[row] + to.force[row]) * (to.opening[row] - from.opening[row]);
+        work += ((1 - end_share) * from.force[row] + end_share * to.force[row]) * (to.opening[row] - from.opening[row]);
       total += std::max(0.0, work);
     }
   }

@@ -280,7 +280,7 @@ void LoadSteps::book(double to) {
   progress_.work += 0.5 * (after - before) * motion_.dot(state_.force + force_);
   State next;
   next.opening = opening_, next.force = force_;
-  progress_.friction += friction_work(last_->problem().model->blocks, state_, next);
+  progress_.friction += friction_work(last_->problem().model->blocks, state_, next, 0.5);
 }
 
 void LoadSteps::accept(double to) {

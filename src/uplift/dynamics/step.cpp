@@ -329,10 +329,10 @@ bool Stepper::try_step(Level& level) {
   } else {
     small::copy(contact_.size(), solution.force.data(), contact_.data());
     small::copy(contact_.size(), contact_.data(), next_.force.data());
-    friction_step_ = friction_work(last_->model->blocks, now_, next_);
+    const double end = impacts_ ? end_share() : 0.5;
+    friction_step_ = friction_work(last_->model->blocks, now_, next_, end);
     // what moving supports put in through the interfaces, by the forces that moved the step
     if (gap_moves_) {
-      const double end = impacts_ ? end_share() : 0.5;
       energies_.external += (1 - end) * now_.force.dot(gap_step_) + end * contact_.dot(gap_step_);
     }
     if (impacts_) {
@@ -371,6 +371,7 @@ bool Stepper::substep(int halving) {
     return true;
   }
   impact_loss_ = impact_before;
+  if (path_) next_.velocity = now_.velocity;  // what has failed may not be finite
   restore_dropped();
   undo_kick();
   failed_step_ = now.step;

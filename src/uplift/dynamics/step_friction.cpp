@@ -32,10 +32,11 @@ bool lifted(const std::vector<Block>& blocks, const State& before, const Vector&
                               [&](int row, bool at_end) { return (at_end ? opening : before.opening)[row] > closed_gap; });
 }
 
-/// Work of friction in a step in which a gap closes, by the impulses P that act: sum of max(0, 1/2 p_0 . dg + 1/2 P . (r_0 + r_1)) with the
-/// rates r of the slip before and after; `rates` is their sum. The multiplier of such a step may be up to twice the impulse over the step.
-double friction_of_impulses(const std::vector<Block>& blocks, const State& before, const State& after, const Vector& impulse,
-                            const Vector& rates) {
+/// Work of friction in a step in which a gap closes, by the impulses P that act: sum of max(0, w_0 p_0 . dg + 1/2 P . (r_0 + r_1)) with the
+/// rates r of the slip before and after; `rates` is their sum, w_0 the share of the force at the beginning. The multiplier of such a step
+/// may be up to twice the impulse over the step.
+double friction_of_impulses(const std::vector<Block>& blocks, const State& before, const State& after, double begin_share,
+                            const Vector& impulse, const Vector& rates) {
   double work = 0;
   for (const Block& block : blocks) {
     if (block.cone == nullptr) continue;
@@ -43,7 +44,7 @@ double friction_of_impulses(const std::vector<Block>& blocks, const State& befor
     for (int i = block.first; i < block.first + n; ++i) {
       double of_point = 0;
       for (int c = 0, row = i; c + 1 < block.batch.components; ++c, row += n)
-        of_point += 0.5 * before.force[row] * (after.opening[row] - before.opening[row]) + 0.5 * impulse[row] * rates[row];
+        of_point += begin_share * before.force[row] * (after.opening[row] - before.opening[row]) + 0.5 * impulse[row] * rates[row];
       work += std::max(0.0, of_point);
     }
   }
@@ -218,7 +219,7 @@ bool Stepper::impact_of_friction(const Level& level, const Impact& data) {
   if (gap_moves_)
     for (const PrescribedMotion& motion : model_.motions) now.rates += motion.opening * motion.function->rate(now_.time);
   impact_loss_ += friction_step_;
-  friction_step_ = friction_of_impulses(blocks, now_, next_, now.impulse, now.rates);
+  friction_step_ = friction_of_impulses(blocks, now_, next_, 1 - end_share(), now.impulse, now.rates);
   impact_loss_ -= friction_step_;
   for (const Block& block : blocks) {
     if (block.cone == nullptr) continue;

@@ -43,6 +43,10 @@ bool is_force(const VerdictQuantity& quantity) {
   return std::ranges::find(names, quantity.name) != std::end(names);
 }
 
+double accepted_change(const VerdictQuantity& quantity) {
+  return is_force(quantity) ? accepted_force_change : accepted_step_change;
+}
+
 /// What the change of a number is divided by.
 double reference(const VerdictNumber& number, double other, const Scale& scale) {
   const VerdictQuantity& quantity = *number.quantity;
@@ -84,6 +88,12 @@ double least_acceleration(const BuiltCase& built, const RunResult& run) {
   return std::max(noise_share * ground_peak(built.model, run.steps), round_off_share * built.model.assembly.gravity.norm());
 }
 
+/// `quantity` null: a floor spectrum.
+void note_change(double change, double accepted, const VerdictQuantity* quantity, const std::string& of, StepCheck& check) {
+  if (change > check.largest) check.largest = change, check.quantity = quantity, check.of = of;
+  if (change / accepted > check.decisive.excess) check.decisive = {change, change / accepted, quantity, of};
+}
+
 /// Compares the numbers of one table; keeps the one that changes most.
 void compare_numbers(std::vector<VerdictNumber>& numbers, const std::vector<VerdictNumber>& coarse, const std::string& of,
                      const Scale& scale, StepCheck& check) {
@@ -93,8 +103,7 @@ void compare_numbers(std::vector<VerdictNumber>& numbers, const std::vector<Verd
     number.coarse = other->value;
     if (!decides(*number.quantity) || is_noise_in_both(number)) continue;
     number.step_change = change_of_step(number, other->value, scale);
-    if (is_force(*number.quantity)) check.forces = std::max(check.forces, *number.step_change);
-    if (*number.step_change > check.largest) check.largest = *number.step_change, check.quantity = number.quantity, check.of = of;
+    note_change(*number.step_change, accepted_change(*number.quantity), number.quantity, of, check);
   }
 }
 
@@ -117,11 +126,15 @@ std::string how_it_ended(const RunResult& run) {
 }
 
 void judge(StepCheck& check) {
-  const bool moves = check.largest > accepted_step_change, by_chance = check.part.change > accepted_force_change;
+  const bool moves = check.decisive.excess > 1, in_a_part = check.part.change > accepted_force_change;
   const bool loses = check.lost > accepted_energy_loss;
-  check.state = moves || by_chance || loses ? StepCheck::State::not_converged : StepCheck::State::converged;
-  const double excess = std::max(check.largest / accepted_step_change, std::max(check.forces, check.part.change) / accepted_force_change);
-  check.sufficient_step = moves ? rounded_down(check.step / excess) : 0;
+  check.state = moves || in_a_part || loses ? StepCheck::State::not_converged : StepCheck::State::converged;
+  check.sufficient_step = moves ? rounded_down(check.step / check.decisive.excess) : 0;
+}
+
+std::string what_changes(const VerdictQuantity* quantity, const std::string& of) {
+  if (!quantity) return of.empty() ? "" : "floor spectrum of " + of;
+  return of.empty() ? std::string(quantity->brief) : fmt::format("{} of {}", quantity->brief, of);
 }
 
 /// Relative to the larger of both values, 0.3 %.
@@ -133,18 +146,15 @@ std::string change_in_words(const VerdictNumber& number, double difference) {
 
 using Instant = StepRecord::Instant;
 using OfInstant = double (*)(const Instant&);
-/// A force on a base, and in how many parts of the time its peaks are compared.
 struct ComparedForce {
   std::string_view name;
   OfInstant of;
-  int parts;
 };
-/// Of the shear, which friction redistributes with every slip, the peak of all of it.
+/// Without the shear, which friction redistributes with every slip.
 constexpr ComparedForce forces_of_a_base[] = {
-    {"max_moment", [](const Instant& now) { return std::sqrt(now.moment_1 * now.moment_1 + now.moment_2 * now.moment_2); }, parts_of_time},
-    {"max_compression", [](const Instant& now) { return -now.axial; }, parts_of_time},
-    {"max_toe_pressure", [](const Instant& now) { return now.pressure; }, parts_of_time},
-    {"max_shear", [](const Instant& now) { return std::sqrt(now.shear_1 * now.shear_1 + now.shear_2 * now.shear_2); }, 1}};
+    {"max_moment", [](const Instant& now) { return std::sqrt(now.moment_1 * now.moment_1 + now.moment_2 * now.moment_2); }},
+    {"max_compression", [](const Instant& now) { return -now.axial; }},
+    {"max_toe_pressure", [](const Instant& now) { return now.pressure; }}};
 
 /// A force on a base over time.
 struct StepHistory {
@@ -208,7 +218,7 @@ void compare_floors(const std::vector<FloorSpectra>& floors, const std::vector<F
         const double size = std::max({fine.values[f], other.values[f], least_spectrum * peak});
         const double change = std::abs(fine.values[f] - other.values[f]) / size;
         check.floors = std::max(check.floors, change);
-        if (change > check.largest) check.largest = change, check.quantity = nullptr, check.of = floors[k].name;
+        note_change(change, accepted_step_change, nullptr, floors[k].name, check);
       }
     }
   judge(check);
@@ -217,12 +227,12 @@ void compare_floors(const std::vector<FloorSpectra>& floors, const std::vector<F
 void compare_parts(const StepRecord& steps, const StepRecord& coarse, const VerdictNumbers& numbers, StepCheck& check) {
   if (steps.size() < 2 || coarse.size() < 2) return;
   for (std::size_t k = 0; k < numbers.bases(); ++k)
-    for (const auto& [name, of, parts] : forces_of_a_base) {
+    for (const auto& [name, of] : forces_of_a_base) {
       const VerdictNumber* number = find_number(numbers.interfaces[k].numbers, name);
       if (!number || !number->coarse || !(number->value > number->least)) continue;
       const StepHistory fine{steps, k, of}, other{coarse, k, of};
-      const double peak = std::max(number->value, *number->coarse), length = (steps.time.back() - steps.time.front()) / parts;
-      for (int i = 0; i < parts; ++i) {
+      const double peak = std::max(number->value, *number->coarse), length = (steps.time.back() - steps.time.front()) / parts_of_time;
+      for (int i = 0; i < parts_of_time; ++i) {
         const double from = steps.time.front() + i * length, to = from + length, beside = length / 10;
         const double change = std::max(fine.peak(from, to) - other.peak(from - beside, to + beside),
                                        other.peak(from, to) - fine.peak(from - beside, to + beside)) /
@@ -238,6 +248,7 @@ StepCheck check_step(const BuiltCase& built, const RunResult& run, const FloorRu
   StepCheck check;
   check.step = longest_step(built.plan);
   check.coarse_step = companion.step;
+  for (const Interval& lost : numbers.full_loss) check.no_contact = std::max(check.no_contact, lost.to - lost.from);
   const RunStatus ended = companion.run->status;
   if (ended == RunStatus::interrupted || run.status == RunStatus::interrupted) {
     check.reason = "interrupted";
@@ -248,7 +259,6 @@ StepCheck check_step(const BuiltCase& built, const RunResult& run, const FloorRu
     compare_steps(numbers, numbers_of(*companion.built, *companion.run, companion.bonded), check);
     compare_parts(run.steps, companion.run->steps, numbers, check);
     if (floors) compare_floors(floors->floors, floor_spectra(companion.built->plan, *companion.run), check, least_acceleration(built, run));
-    check.no_contact = value_or(numbers.whole, "full_loss_of_contact", 0);
     check.lost = run.energy_scale > 0 ? run.energy_lost / run.energy_scale : 0;
     judge(check);
   }
@@ -260,31 +270,27 @@ std::string StepCheck::sentence() const {
   const std::string steps = fmt::format("{} instead of {}", format_quantity(coarse_step, "s"), format_quantity(step, "s"));
   if (state == State::not_converged)
     return "Not converged: " + why_not(steps) + after_loss() + " The changes beside the numbers are no bounds of their errors.";
+  const std::string changes = what_changes(quantity, of);
   return fmt::format("Converged: with twice the step ({}) no number of the verdict changes by more than {}{}.", steps, percent(largest),
-                     what_changes().empty() ? "" : " (" + what_changes() + ")");
+                     changes.empty() ? "" : " (" + changes + ")");
 }
 
 std::string StepCheck::after_loss() const {
   if (no_contact < long_loss) return "";
-  return fmt::format(" There is no contact for {}: every impact depends on the one before, and a smaller step need not settle them.",
+  return fmt::format(" There is no contact for {}: every impact depends on the one before, so that a smaller step need not settle the run.",
                      format_quantity(no_contact, "s"));
-}
-
-std::string StepCheck::what_changes() const {
-  if (!quantity) return of.empty() ? "" : "floor spectrum of " + of;
-  return of.empty() ? std::string(quantity->brief) : fmt::format("{} of {}", quantity->brief, of);
 }
 
 std::string StepCheck::why_not(const std::string& steps) const {
   if (!reason.empty()) return fmt::format("{} ({}).", reason, steps);
-  if (largest <= accepted_step_change && part.change <= accepted_force_change)
-    return fmt::format("the time scheme lost {} of the energy that was put in, because a step of {} does not resolve the motion.",
-                       percent(lost), format_quantity(step, "s"));
-  if (largest <= accepted_step_change)
+  if (decisive.excess > 1)
+    return fmt::format("with twice the step ({}) {} changes by {}; a step of {} is expected to be sufficient.", steps,
+                       what_changes(decisive.quantity, decisive.of), percent(decisive.change), format_quantity(sufficient_step, "s"));
+  if (part.change > accepted_force_change)
     return fmt::format("with twice the step ({}) the {} of {} from {} to {} changes by {} of that of the whole time.", steps,
                        part.quantity->brief, part.of, format_quantity(part.from, "s"), format_quantity(part.to, "s"), percent(part.change));
-  return fmt::format("with twice the step ({}) {} changes by {}; a step of {} is expected to be sufficient.", steps, what_changes(),
-                     percent(largest), format_quantity(sufficient_step, "s"));
+  return fmt::format("the time scheme lost {} of the energy that was put in, because a step of {} does not resolve the motion.",
+                     percent(lost), format_quantity(step, "s"));
 }
 
 std::string format_step_change(const VerdictNumber& number) {

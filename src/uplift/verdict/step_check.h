@@ -22,7 +22,7 @@ double longest_step(const RunPlan& plan);
 struct StepCheck {
   enum class State {
     not_made,       // the numbers were not compared with another step
-    converged,      // no number moves by more than accepted_step_change, no force on a base by more than accepted_force_change
+    converged,      // no number moves by more than what is accepted
     not_converged,  // at least one does, the scheme loses energy, or the companion ended differently
   } state = State::not_made;
   double step = 0, coarse_step = 0;           // s: longest of the dynamic stages, of the run and of the companion
@@ -30,8 +30,14 @@ struct StepCheck {
   const VerdictQuantity* quantity = nullptr;  // that number, null: none changes, or a floor spectrum changes most
   std::string of;                             // its interface, beam or floor; empty: of the whole run
   double floors = 0, floors_to = 0;           // largest change of a floor spectrum, up to this frequency [Hz]; 0 Hz: there is none
-  double forces = 0;                          // largest change of a force or pressure among the numbers
   double sufficient_step = 0;                 // s: where errors proportional to the step are the accepted ones; 0 where unknown
+  /// The number that changes most beside what is accepted for it (accepted_force_change for forces and pressures of bases, else
+  /// accepted_step_change): above an excess of 1 the run is not converged.
+  struct Decisive {
+    double change = 0, excess = 0;
+    const VerdictQuantity* quantity = nullptr;  // null: a floor spectrum
+    std::string of;
+  } decisive;
   /// The largest change of a peak of the forces on a base within a part of the time, relative to the peak of all of it. Where impacts make
   /// two runs go different ways, their overall peaks may still agree by chance; those of every part do not.
   struct Part {
@@ -43,22 +49,21 @@ struct StepCheck {
   // Share of the energy put in that the scheme lost in the run. A scheme that damps what no step near this one resolves gives both runs the
   // same wrong peak.
   double lost = 0;
-  double no_contact = 0;  // s: of the run, all bases at once
+  double no_contact = 0;  // s: the longest time of the run without contact of any base
   std::string reason;     // why it was not made, or how the companion ended
   /// One sentence for the terminal and the first page.
   std::string sentence() const;
 
  private:
   std::string after_loss() const;
-  std::string what_changes() const;
   std::string why_not(const std::string& steps) const;
 };
 std::string_view to_string(StepCheck::State);
 
-/// Share of its reference by which a number, or a peak within a part of the time, may change when the step is doubled.
+/// Share of its reference by which a number may change when the step is doubled.
 inline constexpr double accepted_step_change = 0.05;
-/// The same of the peaks of the forces on a base, in every part of the time, relative to the peak of all of it: the suggested step is
-/// meant to give forces within 3 %, and at impacts and slips, of first order, the change is about the error.
+/// The same of the forces and pressures of a base, and of their peaks in every part of the time, relative to the peak of all of it: the
+/// suggested step is meant to give forces within 3 %, and at impacts and slips, of first order, the change is about the error.
 inline constexpr double accepted_force_change = 0.03;
 /// Share of the energy put in that the time scheme may lose before the verdict marks it and a warning tells it.
 inline constexpr double accepted_energy_loss = 0.05;
@@ -77,9 +82,8 @@ StepCheck check_step(const BuiltCase& built, const RunResult& run, const FloorRu
                      VerdictNumbers& numbers);
 /// The comparison alone: fills the rest of a check whose steps are known.
 void compare_steps(VerdictNumbers& numbers, const VerdictNumbers& coarse, StepCheck& check);
-/// The peaks of moment, compression and pressure of every base in twentieths of the time, and that of the shear in all of it. One that the
-/// other run reaches a tenth of a part earlier or later, in the part beside it, counts as reached. `numbers`: of the run; its bases come
-/// first.
+/// The peaks of moment, compression and pressure of every base in twentieths of the time. One that the other run reaches a tenth of a part
+/// earlier or later, in the part beside it, counts as reached. `numbers`: of the run; its bases come first.
 void compare_parts(const StepRecord& steps, const StepRecord& coarse, const VerdictNumbers& numbers, StepCheck& check);
 /// The same for the spectra of floors, in the same order. Floors whose spectrum nowhere exceeds `least` [m/s2], or noise_share of the
 /// largest acceleration of all floors, are not excited: they decide nothing.
