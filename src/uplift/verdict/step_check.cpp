@@ -129,7 +129,9 @@ void judge(StepCheck& check) {
   const bool moves = check.decisive.excess > 1, in_a_part = check.part.change > accepted_force_change;
   const bool loses = check.lost > accepted_energy_loss;
   check.state = moves || in_a_part || loses ? StepCheck::State::not_converged : StepCheck::State::converged;
-  check.sufficient_step = moves ? rounded_down(check.step / check.decisive.excess) : 0;
+  // after a long loss of contact the impacts of the two runs are others: the change in a part says nothing of the step
+  const double excess_in_a_part = check.no_contact < long_loss ? check.part.change / accepted_force_change : 0;
+  check.sufficient_step = moves ? rounded_down(check.step / std::max(check.decisive.excess, excess_in_a_part)) : 0;
 }
 
 std::string what_changes(const VerdictQuantity* quantity, const std::string& of) {
