@@ -135,13 +135,15 @@ void write_step_check(ResultWriter& out, const StepCheck& check) {
     out.when(changed).number("largest_change_percent", 100 * check.largest, "%", "largest change of a number of the verdict");
     out.when(changed).text("quantity", check.quantity ? check.quantity->name : "floor_spectrum", "number with this change");
     out.when(changed && !check.of.empty()).text("of", check.of, "interface, beam or floor of that number");
-    out.when(check.part.quantity != nullptr).object("peaks_within_parts", "largest change of a peak of moment, compression or pressure of a base within a twentieth of the time", [&] {
-      out.number("change_percent", 100 * check.part.change, "%", "change, relative to the peak of the whole time");
-      out.text("quantity", check.part.quantity ? check.part.quantity->name : "", "number whose history it is");
-      out.text("of", check.part.of, "base");
-      out.number("from", check.part.from, "s", "beginning of the part");
-      out.number("to", check.part.to, "s", "its end");
-    });
+    out.when(check.part.quantity != nullptr)
+        .object("peaks_within_parts",
+                "largest change of a peak of moment, compression or pressure of a base within a twentieth of the time", [&] {
+                  out.number("change_percent", 100 * check.part.change, "%", "change, relative to the peak of the whole time");
+                  out.text("quantity", check.part.quantity ? check.part.quantity->name : "", "number whose history it is");
+                  out.text("of", check.part.of, "base");
+                  out.number("from", check.part.from, "s", "beginning of the part");
+                  out.number("to", check.part.to, "s", "its end");
+                });
     out.when(floors).number("floor_spectra_change_percent", 100 * check.floors, "%", "largest change of a floor spectrum");
     out.when(floors).number("floor_spectra_to", check.floors_to, "Hz", "frequency up to which floor spectra were compared");
     out.when(check.sufficient_step > 0)
