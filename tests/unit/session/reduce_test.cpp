@@ -129,7 +129,9 @@ TEST(ReducedRun, NeverCreatesEnergyWhateverTheBasis) {
     double stored = 0;
     for (std::size_t k = 1; k < reduced.table.size(); ++k)
       if (reduced.columns[k - 1].unit == "J") stored = std::max(stored, largest(reduced.table[k]));
-    const double round_off = 1e-10 * reduced.energy_scale + 1e-14 * stored;
+    // each step rounds them by some 1e-15, up or down, by more or less with other kernels of BLAS
+    const double walk = 1e-15 * std::max(10.0, 3 * std::sqrt(static_cast<double>(reduced.counts.steps))) * stored;
+    const double round_off = 1e-10 * reduced.energy_scale + walk;
     EXPECT_LE(reduced.energy_created, round_off) << "seed " << seed;
     EXPECT_LE(reduced.energy_lost, round_off) << "seed " << seed;
   }
