@@ -25,7 +25,7 @@ bool independent(Matrix gram) {
 }
 
 /// B = W V^T. The two common cases are tried first; else a QR decides about the rank, on columns scaled to length one, so that units play
-/// no part.
+/// no part; those of round-off, which walls with computed normals have, count as zero.
 RankFactors rank_factors(const Sparse& b) {
   const Index rows = b.rows(), columns = b.cols();
   Sparse identity(columns, columns);
@@ -33,8 +33,10 @@ RankFactors rank_factors(const Sparse& b) {
   if (columns <= rows && independent(Sparse(b.transpose() * b))) return {Matrix(b), identity};
   if (columns > rows && independent(Sparse(b * b.transpose()))) return {Matrix(), b.transpose()};
   const Matrix dense = b;
-  const Vector scale = dense.colwise().norm().cwiseInverse();
-  const PivotedQr qr(dense * scale.asDiagonal());
+  constexpr double nothing = 1e-15;
+  Vector size = dense.colwise().norm();
+  size = (size.array() > nothing * size.maxCoeff()).select(size, 0).eval();
+  const PivotedQr qr(dense * (size.array() > 0).select(size.cwiseInverse(), 0).matrix().asDiagonal());
   const double largest = qr->maxPivot();
   Index rank = 0;
   while (rank < std::min(rows, columns) && std::abs(qr->matrixR()(rank, rank)) > 1e-11 * largest) ++rank;
@@ -42,7 +44,7 @@ RankFactors rank_factors(const Sparse& b) {
   if (rank == rows) return {Matrix(), b.transpose()};
   Matrix r = qr->matrixR().topRows(rank).triangularView<upper_triangle>();
   r = (r * qr->colsPermutation().transpose()).eval();
-  return {columns_of_q(qr, rank), Matrix(scale.cwiseInverse().asDiagonal() * r.transpose()).sparseView()};
+  return {columns_of_q(qr, rank), Matrix(size.asDiagonal() * r.transpose()).sparseView()};
 }
 
 /// The unknowns that B touches, as columns of an identity.

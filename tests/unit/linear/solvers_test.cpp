@@ -270,6 +270,21 @@ TEST(Spread, IdentitiesWithRedundantRows) {
   }
 }
 
+/// An unknown that redundant rows touch by the round-off of their normals only adds no direction.
+TEST(Spread, ColumnsOfRoundOffAddNoDirection) {
+  std::srand(6);
+  const Index n = 20, rows = 14, touched = 18, rank = 5;
+  const Matrix a = random_spd(n, 1e4);
+  Matrix b = Matrix::Zero(rows, n);
+  b.leftCols(touched) = Matrix::Random(rows, rank) * Matrix::Random(rank, touched);
+  b.col(touched) = 1e-17 * Vector::Random(rows);
+  const Factorisation result = solver_catalog()[0]->make(Values())->factorise(a.sparseView());
+  const Spread spread = spread_through(*result.factor, b.sparseView());
+  ASSERT_EQ(spread.factor.cols(), rank);
+  const Matrix answer = PivotedLdlt(a).solve(b.transpose());
+  EXPECT_LE((spread.spread * spread.factor.transpose() - answer).norm(), 1e-11 * answer.norm());
+}
+
 TEST(Spread, RigidFootingNeedsThreeColumnsAndThreeSolves) {
   ModelBuilder builder;
   builder.add_node("base", {0, 0}, support::here);
