@@ -68,6 +68,9 @@ class StepCheck(CliTest):
         check = verdict["step_check"]
         self.assertEqual(check["result"], "not converged")
         self.assertGreater(check["largest_change_percent"], 5)
+        number = verdict["interfaces"][0]["numbers"].get(check["decisive"]["quantity"]) or verdict["numbers"][check["decisive"]["quantity"]]
+        self.assertEqual(check["decisive"]["change_percent"], number["step_change_percent"])
+        self.assertIn(check["decisive"]["accepted_percent"], (3, 5))
         self.assertIn("(not converged)", text.splitlines()[0])
         self.assertIn("(not converged)", verdict["headline"])
         self.assertIn("Not converged: with twice the step (20.0 ms instead of 10.0 ms)", text)

@@ -91,7 +91,7 @@ double least_acceleration(const BuiltCase& built, const RunResult& run) {
 /// `quantity` null: a floor spectrum.
 void note_change(double change, double accepted, const VerdictQuantity* quantity, const std::string& of, StepCheck& check) {
   if (change > check.largest) check.largest = change, check.quantity = quantity, check.of = of;
-  if (change / accepted > check.decisive.excess) check.decisive = {change, change / accepted, quantity, of};
+  if (change / accepted > check.decisive.excess()) check.decisive = {change, accepted, quantity, of};
 }
 
 /// Compares the numbers of one table; keeps the one that changes most.
@@ -126,12 +126,12 @@ std::string how_it_ended(const RunResult& run) {
 }
 
 void judge(StepCheck& check) {
-  const bool moves = check.decisive.excess > 1, in_a_part = check.part.change > accepted_force_change;
+  const bool moves = check.decisive.excess() > 1, in_a_part = check.part.change > accepted_force_change;
   const bool loses = check.lost > accepted_energy_loss;
   check.state = moves || in_a_part || loses ? StepCheck::State::not_converged : StepCheck::State::converged;
   // after a long loss of contact the impacts of the two runs are others: the change in a part says nothing of the step
   const double excess_in_a_part = check.no_contact < long_loss ? check.part.change / accepted_force_change : 0;
-  check.sufficient_step = moves ? rounded_down(check.step / std::max(check.decisive.excess, excess_in_a_part)) : 0;
+  check.sufficient_step = moves ? rounded_down(check.step / std::max(check.decisive.excess(), excess_in_a_part)) : 0;
 }
 
 std::string what_changes(const VerdictQuantity* quantity, const std::string& of) {
@@ -285,7 +285,7 @@ std::string StepCheck::after_loss() const {
 
 std::string StepCheck::why_not(const std::string& steps) const {
   if (!reason.empty()) return fmt::format("{} ({}).", reason, steps);
-  if (decisive.excess > 1)
+  if (decisive.excess() > 1)
     return fmt::format("with twice the step ({}) {} changes by {}; a step of {} is expected to be sufficient.", steps,
                        what_changes(decisive.quantity, decisive.of), percent(decisive.change), format_quantity(sufficient_step, "s"));
   if (part.change > accepted_force_change)

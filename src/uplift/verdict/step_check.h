@@ -34,9 +34,10 @@ struct StepCheck {
   /// The number that changes most beside what is accepted for it (accepted_force_change for forces and pressures of bases, else
   /// accepted_step_change): above an excess of 1 the run is not converged.
   struct Decisive {
-    double change = 0, excess = 0;
+    double change = 0, accepted = 1;
     const VerdictQuantity* quantity = nullptr;  // null: a floor spectrum
     std::string of;
+    double excess() const { return change / accepted; }
   } decisive;
   /// The largest change of a peak of the forces on a base within a part of the time, relative to the peak of all of it. Where impacts make
   /// two runs go different ways, their overall peaks may still agree by chance; those of every part do not.

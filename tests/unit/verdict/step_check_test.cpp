@@ -102,7 +102,7 @@ TEST(StepCheck, NamesTheNumberThatChangesMostAndTheStep) {
   EXPECT_DOUBLE_EQ(check.largest, 0.2);
   EXPECT_EQ(check.quantity->name, "max_compression");
   EXPECT_EQ(check.of, "soil");
-  EXPECT_DOUBLE_EQ(check.decisive.excess, 0.2 / 0.03);
+  EXPECT_DOUBLE_EQ(check.decisive.excess(), 0.2 / 0.03);
   EXPECT_DOUBLE_EQ(check.sufficient_step, 1e-4) << "3 of 20 % of 1 ms, rounded down";
   EXPECT_EQ(check.sentence(),
             "Not converged: with twice the step (2.00 ms instead of 1.00 ms) largest compression of soil changes by 20 %; "

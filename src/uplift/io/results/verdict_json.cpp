@@ -135,6 +135,13 @@ void write_step_check(ResultWriter& out, const StepCheck& check) {
     out.when(changed).number("largest_change_percent", 100 * check.largest, "%", "largest change of a number of the verdict");
     out.when(changed).text("quantity", check.quantity ? check.quantity->name : "floor_spectrum", "number with this change");
     out.when(changed && !check.of.empty()).text("of", check.of, "interface, beam or floor of that number");
+    const StepCheck::Decisive& decisive = check.decisive;
+    out.when(decisive.excess() > 1).object("decisive", "number that changes most beside what is accepted for it", [&] {
+      out.number("change_percent", 100 * decisive.change, "%", "its change");
+      out.number("accepted_percent", 100 * decisive.accepted, "%", "change that is accepted");
+      out.text("quantity", decisive.quantity ? decisive.quantity->name : "floor_spectrum", "number");
+      out.text("of", decisive.of, "its interface, beam or floor; empty: of the whole run");
+    });
     out.when(check.part.quantity != nullptr)
         .object("peaks_within_parts",
                 "largest change of a peak of moment, compression or pressure of a base within a twentieth of the time", [&] {
