@@ -10,7 +10,7 @@ clang="${CLANG:-$(command -v clang++-14 || echo clang++)}"
 command -v ccache >/dev/null && clang="ccache $clang"
 
 read -ra hdf5 <<<"$(pkg-config --cflags --libs hdf5-serial)"
-flags=(-std=c++20 -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -DUPLIFT_VERSION='"fuzz"' -Isrc -Ifuzz -isystem /usr/include/eigen3)
+flags=(-std=c++20 -g1 -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -DUPLIFT_VERSION='"fuzz"' -Isrc -Ifuzz -isystem /usr/include/eigen3)
 base=(src/uplift/base/{error,text,file}.cpp)
 mesh=("${base[@]}" src/uplift/mesh/{cells,mesh,jacobian,cell_shapes,cell_quadrature}.cpp src/uplift/math/{shapes,quadrature}.cpp src/uplift/io/mesh/draft.cpp)
 declared=("${base[@]}" src/uplift/base/{declare,units,check,format,values}.cpp)

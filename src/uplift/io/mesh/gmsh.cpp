@@ -15,7 +15,7 @@ struct Format {
 
 class GmshFile {
  public:
-  GmshFile(std::string_view bytes, const std::string& file) : bytes_(bytes), file_(file), sections_(gmsh_sections(bytes, file)) {}
+  explicit GmshFile(const GmshSource& source) : source_(source), sections_(gmsh_sections(source)) {}
 
   Mesh read() {
     format_ = read_format();
@@ -31,7 +31,7 @@ class GmshFile {
       read_gmsh_elements_4(need("Elements"), nodes, read_entities(), groups_, mesh);
     else
       read_gmsh_elements_2(need("Elements"), nodes, groups_, mesh);
-    return finish_mesh(std::move(mesh), std::move(groups_.groups()), {file_, 0});
+    return finish_mesh(std::move(mesh), std::move(groups_.groups()), {source_.file(), 0});
   }
 
  private:
@@ -39,7 +39,7 @@ class GmshFile {
     const GmshSection* found = nullptr;
     for (const GmshSection& section : sections_) {
       if (section.name != name) continue;
-      if (found) GmshCursor(bytes_, section, file_, false).fail("one section $" + std::string(name), "a second one");
+      if (found) GmshCursor(source_, section, false).fail("one section $" + std::string(name), "a second one");
       found = &section;
     }
     return found;
@@ -49,17 +49,18 @@ class GmshFile {
     std::vector<std::string> names;
     constexpr std::size_t enough = 10;
     for (const GmshSection& section : sections_)
-      if (names.size() < enough) names.emplace_back("$" + std::string(section.name));
-    throw InputError({file_, 0}, "", "a section $" + std::string(name), names.empty() ? "none" : "only " + listed(names));
+      if (names.size() < enough) names.emplace_back("$" + section.name);
+    throw InputError({source_.file(), 0}, "", "a section $" + std::string(name), names.empty() ? "none" : "only " + listed(names));
   }
-  GmshCursor need(std::string_view name) const { return {bytes_, need_section(name), file_, format_.binary}; }
+  GmshCursor need(std::string_view name) const { return {source_, need_section(name), format_.binary}; }
 
   Format read_format() const {
     if (find("NOD"))
-      throw InputError({file_, 1}, "", "format 4.1 or 2.2 (Gmsh: Save As, or -format msh41)", "format 1, which has no named groups");
-    GmshCursor at(bytes_, need_section("MeshFormat"), file_, false);
+      throw InputError({source_.file(), 1}, "", "format 4.1 or 2.2 (Gmsh: Save As, or -format msh41)",
+                       "format 1, which has no named groups");
+    GmshCursor at(source_, need_section("MeshFormat"), false);
     const Where place = at.where();
-    const std::string_view version = at.word("the version of the format");
+    const std::string version = at.word("the version of the format");
     Format format;
     format.four = version == "4.1";
     if (!format.four && version != "2" && version != "2.0" && version != "2.1" && version != "2.2")
@@ -87,7 +88,7 @@ class GmshFile {
   void read_names() {
     const GmshSection* section = find("PhysicalNames");
     if (!section) return;
-    GmshCursor at(bytes_, *section, file_, false);  // text in binary files too
+    GmshCursor at(source_, *section, false);  // text in binary files too
     for (auto left = at.count("a number of names", 8, 8); left > 0; --left) {
       const int dimension = at.integer("a dimension"), tag = at.integer("a tag");
       if (dimension < 0 || dimension > 3) at.fail("a dimension from 0 to 3", std::to_string(dimension));
@@ -102,8 +103,7 @@ class GmshFile {
     return find("Entities") ? read_gmsh_entities(need("Entities"), false, groups_) : GmshEntities{};
   }
 
-  std::string_view bytes_;
-  const std::string& file_;
+  const GmshSource& source_;
   std::vector<GmshSection> sections_;
   Format format_;
   GmshGroups groups_;
@@ -111,15 +111,21 @@ class GmshFile {
 
 }  // namespace
 
-bool is_gmsh(std::string_view bytes) {
+bool is_gmsh(const GmshSource& source) {
   constexpr std::size_t looked_at = 4096;  // comments may come first
-  const std::string_view head = bytes.substr(0, looked_at), first = trim(head);
+  std::string head;
+  source.append(head, 0, looked_at, source.size());
+  const std::string_view first = trim(head);
   return first.starts_with("$MeshFormat") || first.starts_with("$NOD") || first.starts_with("$Comments") ||
          head.find("\n$MeshFormat") != head.npos;
 }
 
+Mesh read_gmsh(const GmshSource& source) {
+  return GmshFile(source).read();
+}
+
 Mesh read_gmsh(std::string_view bytes, const std::string& file) {
-  return GmshFile(bytes, file).read();
+  return read_gmsh(GmshSource::of_bytes(bytes, file));
 }
 
 }  // namespace uplift

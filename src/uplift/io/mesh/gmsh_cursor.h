@@ -6,25 +6,25 @@
 #include <vector>
 
 #include "uplift/base/error.h"
+#include "uplift/io/mesh/gmsh_source.h"
 
-// Reading .msh files from one buffer in memory: sections, and numbers that are written as text or as bytes.
+// Reading .msh files: sections, and numbers that are written as text or as bytes.
 namespace uplift {
 
 /// One section: $name, its content, $Endname.
 struct GmshSection {
-  std::string_view name;     // without $
-  std::string_view content;  // from the line after the name to the $ of $End
+  std::string name;                  // without $
+  std::uint64_t begin = 0, end = 0;  // of its content: from the line after the name to the $ of $End
 };
 
-/// Cuts a file into its sections. Throws InputError with the line or byte when something stands outside of them or an end is missing.
-std::vector<GmshSection> gmsh_sections(std::string_view bytes, const std::string& file);
+/// Finds the sections of a file. Throws InputError with the line or byte when something stands outside of them or an end is missing.
+std::vector<GmshSection> gmsh_sections(const GmshSource& source);
 
 /// Reads the numbers of a section one after another. Every function throws InputError with the line (text) or the byte (binary) where a
 /// number is missing, out of range or not what was wanted; `what` names it in the message ("a node tag").
 class GmshCursor {
  public:
-  /// `section` is part of `bytes`, the whole file.
-  GmshCursor(std::string_view bytes, const GmshSection& section, const std::string& file, bool binary);
+  GmshCursor(const GmshSource& source, const GmshSection& section, bool binary);
 
   /// An integer of 4 bytes when binary.
   int integer(const char* what) { return binary_ ? raw_integer(what) : static_cast<int>(text_integer(what, -2147483648LL, 2147483647LL)); }
@@ -38,25 +38,38 @@ class GmshCursor {
   /// The same check for a count that was read before.
   void check_count(std::int64_t items, const char* what, std::size_t text_bytes, std::size_t binary_bytes);
   /// A text in double quotes, which ends at the last quote of its line.
-  std::string_view quoted(const char* what);
+  std::string quoted(const char* what);
   /// A word up to white space.
-  std::string_view word(const char* what);
+  std::string word(const char* what);
   /// The rest of the line of text, with its end, when only blanks stand there.
   void end_line();
   /// Everything must have been read.
   void finish(const char* what);
 
-  std::size_t left() const { return static_cast<std::size_t>(end_ - at_); }
+  /// Bytes of the section that have not been read.
+  std::uint64_t left() const { return end_ - offset(); }
   /// The next 4 bytes of text; advances.
   std::uint32_t raw_bytes(const char* what);
   /// InputError here.
   [[noreturn]] void fail(const std::string& wanted, const std::string& found) const;
   Where where() const;
   std::string path() const;
+  const std::string& file() const { return source_->file(); }
 
  private:
+  /// Where the next byte stands in the file.
+  std::uint64_t offset() const { return behind_window_ - (window_.size() - at_); }
+  std::string_view ahead() const { return std::string_view(window_).substr(at_); }
+  /// Has so many bytes ahead in the window, or all that the section still has.
+  void look_ahead(std::size_t bytes) {
+    if (window_.size() - at_ < bytes && behind_window_ < end_) fill(bytes);
+  }
+  void fill(std::size_t bytes);
+  /// The number of bytes ahead for which `wanted` does not hold; all of them are in the window then.
+  template <class Wanted>
+  std::size_t length_before(Wanted wanted);
   void skip_blanks();
-  std::string next_text() const;
+  std::string next_text();
   std::int64_t text_integer(const char* what, std::int64_t least, std::int64_t most);
   double text_real(const char* what);
   int raw_integer(const char* what);
@@ -65,9 +78,10 @@ class GmshCursor {
   template <class T>
   T raw(const char* what);
 
-  const char *begin_, *at_, *end_;
-  std::string name_;
-  const std::string& file_;
+  const GmshSource* source_;
+  std::string name_, window_;  // a piece of the section
+  std::size_t at_ = 0;         // in the window
+  std::uint64_t behind_window_, end_;
   bool binary_;
 };
 
