@@ -21,7 +21,7 @@ POSITIONAL = {
 }
 # methods that are not called like their table, because the case has another method of this name
 RENAMED = {"compare": "comparison", "trust": "trust_settings"}
-INTERFACE_KINDS = ["footing", "pairs", "line", "surface"]
+INTERFACE_KINDS = ["footing", "pairs", "line", "surface", "cut"]
 
 
 def identifier(name):
@@ -130,8 +130,7 @@ def interface_method(kind, interface):
     entries, names = parameters(joined, required, ["name"])
     of_kind = ", ".join(f'"{each}": {identifier(each)}' for each in inner["properties"])
     of_own = ", ".join(f'"{each}": {identifier(each)}' for each in ["name", "law"] + own)
-    head = {"footing": "footing", "pairs": "pairs", "line": "line", "surface": "surface"}[kind]
-    return "\n".join([signature(head, ["self"] + entries, "None", "    "),
+    return "\n".join([signature(kind, ["self"] + entries, "None", "    "),
                       docstring(f"interface of the kind {kind}: {inner['description']}", names, joined, "        "),
                       f"        self._interface({{{of_own}}}, \"{kind}\", {{{of_kind}}})", ""])
 

@@ -32,7 +32,6 @@ class InterfaceTables(TableStore):
         normal: Optional[Sequence[Quantity]] = None,
         bed: Optional[Mapping[str, Any]] = None,
         soil: Optional[Mapping[str, Any]] = None,
-        cut: Optional[Mapping[str, Any]] = None,
         gap: Optional[Quantity] = None,
         gap_profile: Optional[Mapping[str, Any]] = None,
         water: Optional[Mapping[str, Any]] = None,
@@ -58,7 +57,6 @@ class InterfaceTables(TableStore):
             soil: the ground of a rectangle width x thickness (in space width x length), in the plane with rock_depth of
                 a strip: makes the joint stiffer towards the edges, so that it has both the vertical and the rocking
                 stiffness, and gives what the law calls "soil" (K_n, K_t, c).
-            cut: on a plane through cells of the mesh.
             gap: initial gap of every point; geometry: the distance along the normal at which both sides are drawn, of
                 pairs, lines and surfaces with two groups [m]; default 0.0.
             gap_profile: initial gaps that vary over the interface, added to gap.
@@ -68,7 +66,7 @@ class InterfaceTables(TableStore):
                 of gravity (of the vertical axis without gravity); a surface with faces of both kinds is divided, the
                 walls of "soil" become "soil walls"; one of "base", "wall".
         """
-        self._interface({"name": name, "law": law, "cut": cut, "gap": gap, "gap_profile": gap_profile, "water": water, "role": role}, "footing", {"body": body, "width": width, "thickness": thickness, "length": length, "points": points, "points_across": points_across, "azimuth": azimuth, "rule": rule, "offset": offset, "normal": normal, "bed": bed, "soil": soil})
+        self._interface({"name": name, "law": law, "gap": gap, "gap_profile": gap_profile, "water": water, "role": role}, "footing", {"body": body, "width": width, "thickness": thickness, "length": length, "points": points, "points_across": points_across, "azimuth": azimuth, "rule": rule, "offset": offset, "normal": normal, "bed": bed, "soil": soil})
 
     def pairs(
         self,
@@ -79,7 +77,6 @@ class InterfaceTables(TableStore):
         area: Quantity,
         lower: Optional[Sequence[str]] = None,
         normal: Optional[Sequence[Quantity]] = None,
-        cut: Optional[Mapping[str, Any]] = None,
         gap: Optional[Quantity] = None,
         gap_profile: Optional[Mapping[str, Any]] = None,
         water: Optional[Mapping[str, Any]] = None,
@@ -94,7 +91,6 @@ class InterfaceTables(TableStore):
             area: area of each pair [m2], > 0 m2.
             lower: nodes of the ground, in the same order; absent: fixed ground.
             normal: from the ground to the structure; absent: up.
-            cut: on a plane through cells of the mesh.
             gap: initial gap of every point; geometry: the distance along the normal at which both sides are drawn, of
                 pairs, lines and surfaces with two groups [m]; default 0.0.
             gap_profile: initial gaps that vary over the interface, added to gap.
@@ -104,7 +100,7 @@ class InterfaceTables(TableStore):
                 of gravity (of the vertical axis without gravity); a surface with faces of both kinds is divided, the
                 walls of "soil" become "soil walls"; one of "base", "wall".
         """
-        self._interface({"name": name, "law": law, "cut": cut, "gap": gap, "gap_profile": gap_profile, "water": water, "role": role}, "pairs", {"upper": upper, "lower": lower, "normal": normal, "area": area})
+        self._interface({"name": name, "law": law, "gap": gap, "gap_profile": gap_profile, "water": water, "role": role}, "pairs", {"upper": upper, "lower": lower, "normal": normal, "area": area})
 
     def line(
         self,
@@ -116,7 +112,6 @@ class InterfaceTables(TableStore):
         nodes_per_element: Optional[int] = None,
         quadrature: Optional[str] = None,
         thickness: Optional[Quantity] = None,
-        cut: Optional[Mapping[str, Any]] = None,
         gap: Optional[Quantity] = None,
         gap_profile: Optional[Mapping[str, Any]] = None,
         water: Optional[Mapping[str, Any]] = None,
@@ -132,7 +127,6 @@ class InterfaceTables(TableStore):
             nodes_per_element: 2 (linear) or 3 (quadratic), from 2 to 3; default 2.
             quadrature: integration points of an element; one of "nodal", "gauss"; default nodal.
             thickness: length out of the plane [m], > 0 m; default 1.0.
-            cut: on a plane through cells of the mesh.
             gap: initial gap of every point; geometry: the distance along the normal at which both sides are drawn, of
                 pairs, lines and surfaces with two groups [m]; default 0.0.
             gap_profile: initial gaps that vary over the interface, added to gap.
@@ -142,7 +136,7 @@ class InterfaceTables(TableStore):
                 of gravity (of the vertical axis without gravity); a surface with faces of both kinds is divided, the
                 walls of "soil" become "soil walls"; one of "base", "wall".
         """
-        self._interface({"name": name, "law": law, "cut": cut, "gap": gap, "gap_profile": gap_profile, "water": water, "role": role}, "line", {"upper": upper, "lower": lower, "nodes_per_element": nodes_per_element, "quadrature": quadrature, "thickness": thickness})
+        self._interface({"name": name, "law": law, "gap": gap, "gap_profile": gap_profile, "water": water, "role": role}, "line", {"upper": upper, "lower": lower, "nodes_per_element": nodes_per_element, "quadrature": quadrature, "thickness": thickness})
 
     def surface(
         self,
@@ -155,7 +149,6 @@ class InterfaceTables(TableStore):
         upper_group: Optional[str] = None,
         quadrature: Optional[str] = None,
         thickness: Optional[Quantity] = None,
-        cut: Optional[Mapping[str, Any]] = None,
         gap: Optional[Quantity] = None,
         gap_profile: Optional[Mapping[str, Any]] = None,
         water: Optional[Mapping[str, Any]] = None,
@@ -173,7 +166,6 @@ class InterfaceTables(TableStore):
             quadrature: where the joint points stand: at the pairs of nodes, or at Gauss points; one of "nodal",
                 "gauss"; default nodal.
             thickness: length out of the plane (plane meshes); absent: that of the solids (the smaller one) [m], > 0 m.
-            cut: on a plane through cells of the mesh.
             gap: initial gap of every point; geometry: the distance along the normal at which both sides are drawn, of
                 pairs, lines and surfaces with two groups [m]; default 0.0.
             gap_profile: initial gaps that vary over the interface, added to gap.
@@ -183,4 +175,65 @@ class InterfaceTables(TableStore):
                 of gravity (of the vertical axis without gravity); a surface with faces of both kinds is divided, the
                 walls of "soil" become "soil walls"; one of "base", "wall".
         """
-        self._interface({"name": name, "law": law, "cut": cut, "gap": gap, "gap_profile": gap_profile, "water": water, "role": role}, "surface", {"group": group, "lower": lower, "lower_group": lower_group, "upper_group": upper_group, "quadrature": quadrature, "thickness": thickness})
+        self._interface({"name": name, "law": law, "gap": gap, "gap_profile": gap_profile, "water": water, "role": role}, "surface", {"group": group, "lower": lower, "lower_group": lower_group, "upper_group": upper_group, "quadrature": quadrature, "thickness": thickness})
+
+    def cut(
+        self,
+        name: str,
+        *,
+        law: Union[Part, ExternalLaw, str],
+        through: Sequence[str],
+        level: Optional[Quantity] = None,
+        point: Optional[Sequence[Quantity]] = None,
+        normal: Optional[Sequence[Quantity]] = None,
+        upper: Optional[str] = None,
+        x: Optional[Sequence[Quantity]] = None,
+        y: Optional[Sequence[Quantity]] = None,
+        height: Optional[Quantity] = None,
+        free: Optional[str] = None,
+        ground_x: Optional[Sequence[Quantity]] = None,
+        ground_y: Optional[Sequence[Quantity]] = None,
+        jump: Optional[str] = None,
+        mesh_shift: Optional[Quantity] = None,
+        thickness: Optional[Quantity] = None,
+        gap: Optional[Quantity] = None,
+        gap_profile: Optional[Mapping[str, Any]] = None,
+        water: Optional[Mapping[str, Any]] = None,
+        role: Optional[str] = None,
+    ) -> None:
+        """Interface of the kind cut: on a plane through cells of the mesh.
+
+        Parameters:
+            name: name.
+            law: what it does: a traction law or a cone (contact by constraint).
+            through: groups of cells that the plane cuts.
+            level: height of a horizontal plane (y in the plane, z in space); or give point and normal [m].
+            point: a point of the plane [m].
+            normal: its normal, from the ground to the structure.
+            upper: group of the cells above the plane, a new name or a group of the mesh; absent: they stay in their
+                groups.
+            x: outline above the plane: least and largest x; absent: no limit [m].
+            y: in space: least and largest y of the outline; absent: no limit [m].
+            height: height of the outline above the plane; absent: no limit [m], > 0 m.
+            free: name for the surface that the ground has in the plane beside the outlines, where nothing stands on it:
+                the group of loads on it, of no other table. Absent: it carries none.
+            ground_x: ground with bases at several levels: least and largest x of the part that has this one, along
+                faces of cells; absent: all of the groups [m].
+            ground_y: in space: least and largest y of that part [m].
+            jump: how the opening varies within a cell: linear, as the displacements, each side with strains of its own;
+                constant or rigid: the element-condensed form of the literature, one strain for both sides (plane
+                meshes, to compare with it); one of "linear", "constant", "rigid"; default linear.
+            mesh_shift: the nodes near the plane are moved along its normal by this share of the height of the cells
+                there, to see whether it matters how the plane lies in the mesh (trust), from -0.45 to 0.45; default
+                0.0.
+            thickness: length out of the plane (plane meshes); absent: that of the solids (the smaller one) [m], > 0 m.
+            gap: initial gap of every point; geometry: the distance along the normal at which both sides are drawn, of
+                pairs, lines and surfaces with two groups [m]; default 0.0.
+            gap_profile: initial gaps that vary over the interface, added to gap.
+            water: water pressure in the joint; absent: none.
+            role: base: carries the structure and may lift off; uplift, eccentricity, safeties and the headline are
+                those of bases. wall: stands beside it. Absent: by the normals, base within 45 degrees of the direction
+                of gravity (of the vertical axis without gravity); a surface with faces of both kinds is divided, the
+                walls of "soil" become "soil walls"; one of "base", "wall".
+        """
+        self._interface({"name": name, "law": law, "gap": gap, "gap_profile": gap_profile, "water": water, "role": role}, "cut", {"through": through, "level": level, "point": point, "normal": normal, "upper": upper, "x": x, "y": y, "height": height, "free": free, "ground_x": ground_x, "ground_y": ground_y, "jump": jump, "mesh_shift": mesh_shift, "thickness": thickness})

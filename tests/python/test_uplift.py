@@ -5,6 +5,7 @@ import gc
 import json
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -248,6 +249,27 @@ class Runs(unittest.TestCase):
         weight = 130e3 * 9.80665
         self.assertLess(abs(yielding["ground.moment"]).max(), 1.1 * weight * 3 * (1 - weight / 3e6))
         self.assertGreater(abs(elastic["ground.moment"]).max(), 1.1 * weight * 3 * (1 - weight / 3e6))
+
+    def test_a_cut_carries_the_weight_above_it(self):
+        """A raft of 2.6 m x 0.8 m x 3 m with its edges inside cells, on a plane inside a row: N = rho g V."""
+        case = up.Case("cut")
+        case.mesh(soil_box={"soil": {"width": "10 m", "size": "0.5 m", "layers": [{"thickness": "4 m"}]}})
+        case.solid("soil_1", E="50 MPa", poisson=0.3, density=1900, thickness="3 m")
+        case.solid("raft", E="30 GPa", poisson=0.2, density=2500, thickness="3 m")
+        case.support(group="soil_bottom", fixed=["ux", "uy"])
+        case.gravity(0, -10)
+        case.cut("base", through=["soil_1"], level="-1.2 m", upper="raft", x=["-1.2 m", "1.4 m"], height="0.8 m",
+                 law=up.springs(K_n="1 GPa/m", K_t="1 GPa/m", tangential="coulomb", friction=0.5))
+        case.static()
+        weight = 2500 * 10 * 2.6 * 0.8 * 3
+        self.assertAlmostEqual(case.run()["base.axial"][-1], -weight, delta=1e-9 * weight)
+
+    def test_every_kind_of_interface_has_a_method(self):
+        told = subprocess.check_output([PROGRAM, "describe", "section", "interface"], text=True)
+        kinds = re.search("exactly one of (.+) says where", told)[1].replace(" and ", ", ").split(", ")
+        self.assertIn("cut", kinds)
+        for kind in kinds:
+            self.assertTrue(callable(getattr(up.Case, kind, None)), kind)
 
     def test_directions_follow_the_space_of_the_case(self):
         case = up.Case("a mass on a column")
