@@ -9,6 +9,7 @@
 
 #include "uplift/interface/interface.h"
 #include "uplift/mesh/cell_shapes.h"
+#include "uplift/mesh/placed_cell.h"
 
 namespace uplift {
 namespace {
@@ -270,11 +271,24 @@ std::vector<JumpEquation> jump_equations(const Mesh& mesh, const CutFace& face, 
   return equations;
 }
 
+bool is_crossed(const Mesh& mesh, CellId cell, const CutFace& face) {
+  const Vec3 along = face.corners[1] - face.corners[0];
+  const Vec3 normal = mesh.dimension == 2 ? Vec3(-along.y(), along.x(), 0) : cross(along, face.corners[2] - face.corners[0]);
+  const double tolerance = 1e-6 * normal.norm() * std::pow(signed_size(mesh, cell), 1.0 / mesh.dimension);
+  bool below = false, above = false;
+  for (const int node : mesh.cell(cell)) {
+    const double distance = normal.dot(mesh.nodes[at(node)] - face.corners[0]);
+    below = below || distance < -tolerance, above = above || distance > tolerance;
+  }
+  return below && above;
+}
+
 CutJoints cut_joints(const Mesh& mesh, const std::vector<CutFace>& faces, const Vec3& normal, double thickness, double gap) {
   Points points(mesh, normal, gap);
   CutJoints made;
   for (const CutFace& face : faces) {
     made.inclined = made.inclined || !face.level;
+    made.simplices = made.simplices || (is_simplex(mesh.type(face.upper)) && is_crossed(mesh, face.upper, face));
     points.begin(face);
     if (mesh.dimension == 2)
       add_cut_line(face, thickness, points);

@@ -14,8 +14,12 @@ namespace uplift {
 struct CutJoints {
   std::vector<JointPoint> points;  // in the plane along the line; in space by rows of growing t2, then t1 (local_axis)
   Facets facets;
-  bool inclined = false;  // some face is not level
+  bool inclined = false;   // some face is not level
+  bool simplices = false;  // some face passes through a triangle or a tetrahedron
 };
+/// Whether the plane passes through the cell, not along one of its sides.
+bool is_crossed(const Mesh& mesh, CellId cell, const CutFace& face);
+
 CutJoints cut_joints(const Mesh& mesh, const std::vector<CutFace>& faces, const Vec3& normal, double thickness, double gap);
 
 /// What the jump between both sides may be within a cell of its own doubles (CutPlane::own_doubles).

@@ -325,5 +325,21 @@ TEST(CutCase, RefusesWithFileAndKey) {
             std::string::npos);
 }
 
+TEST(CutCase, ConstraintsNeedLevelPlanesThroughQuadrilateralsOrHexahedra) {
+  // Triangles have a point at every crossing: T + 1 in a row of T with T + 2 nodes. Their tractions change sign under a closed base.
+  const auto refusal = [](const std::string& text, const Mesh& mesh) {
+    return support::refusal_of([&] { build(read_on(text, mesh), RunSpec{}); });
+  };
+  const auto x = uniform_lines(-1, 1, 2), y = uniform_lines(0, 10, 10);
+  const std::string inside = column(5.63, "\"unilateral\""), through_nodes = column(6, "\"unilateral\"");
+  EXPECT_NE(refusal(inside, rectangle(x, y, Cell::tri3)).find("through triangles"), std::string::npos);
+  EXPECT_NO_THROW(build(read_on(through_nodes, rectangle(x, y, Cell::tri3)), RunSpec{}));
+  EXPECT_NO_THROW(build(read_on(inside, rectangle(x, y)), RunSpec{}));
+  std::string text = bar("[0, 0, 1]", 3);
+  text.replace(text.find("law = {"), text.find("[[output.history]]") - text.find("law = {"), "law = \"unilateral\"\n");
+  const auto lines = uniform_lines(0, 1, 3);
+  EXPECT_NE(refusal(text, box(uniform_lines(0, 4, 4), lines, lines, Cell::tet4)).find("through tetrahedra"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace uplift::cut_test

@@ -10,6 +10,7 @@
 #include "uplift/case/ground/ground.h"
 #include "uplift/case/mesh/mesh.h"
 #include "uplift/case/schema/case_input.h"
+#include "uplift/interface/cut_joint.h"
 #include "uplift/laws/macro_element.h"
 
 namespace uplift {
@@ -112,19 +113,6 @@ void warn_unloaded(const Case& read, const BuiltCase& built, std::vector<std::st
 
 double size_of(const Mesh& mesh, CellId cell) {
   return std::pow(signed_size(mesh, cell), 1.0 / mesh.dimension);  // m
-}
-
-/// Whether a plane passes through a cell, not along one of its sides.
-bool is_crossed(const Mesh& mesh, CellId cell, const CutFace& face) {
-  const Vec3 along = face.corners[1] - face.corners[0];
-  const Vec3 normal = mesh.dimension == 2 ? Vec3(-along.y(), along.x(), 0) : cross(along, face.corners[2] - face.corners[0]);
-  const double tolerance = 1e-6 * normal.norm() * size_of(mesh, cell);
-  bool below = false, above = false;
-  for (const int node : mesh.cell(cell)) {
-    const double distance = normal.dot(mesh.nodes[static_cast<std::size_t>(node)] - face.corners[0]);
-    below = below || distance < -tolerance, above = above || distance > tolerance;
-  }
-  return below && above;
 }
 
 /// Where a plane cuts its cells at an angle, or triangles and tetrahedra, tractions of joints much stiffer than the cells vary from point

@@ -128,7 +128,8 @@ void limit_jumps(const CaseCut& cut, const std::vector<CutFace>& faces, const Ve
     }
 }
 
-/// Cones hold their points by constraints, which are too many on inclined faces: their tractions would not be determined.
+/// Cones hold their points by constraints, which are too many on inclined faces and in triangles and tetrahedra: their tractions would not
+/// be determined, and points of a closed base would open.
 void add_cut(const CaseInterface& interface, const CaseCut& cut, const std::vector<CutFace>& faces, const CaseNames& names,
              ModelBuilder& builder, Joint& joint) {
   const Mesh& mesh = names.solids->mesh();
@@ -137,6 +138,7 @@ void add_cut(const CaseInterface& interface, const CaseCut& cut, const std::vect
   CutJoints made = cut_joints(mesh, faces, normal, thickness, interface.gap);
   if (cut.jump != CaseCut::Jump::linear) limit_jumps(cut, faces, normal, names, builder);
   joint.facts.facets = std::make_shared<Facets>(std::move(made.facets));
+  if (made.simplices) joint.facts.why_no_cones = mesh.dimension == 2 ? "a plane through triangles" : "a plane through tetrahedra";
   if (made.inclined) joint.facts.why_no_cones = "a plane that cuts its cells at an angle";
   if (cut.jump != CaseCut::Jump::linear) joint.facts.why_no_cones = "a plane with constant or rigid jumps";
   for (const CutFace& face : faces) joint.facts.corners.insert(joint.facts.corners.end(), face.corners.begin(), face.corners.end());
