@@ -127,6 +127,53 @@ source = "specification, 4.2"
         self.assertTrue((self.folder / "r.2").is_dir())
         self.assertEqual([p.name for p in self.folder.iterdir() if ".part" in p.name], [])
 
+    def test_report_shows_a_load_on_the_surface_beside_a_cut(self):
+        # a raft of 2.6 x 0.8 m on a plane inside a row of cells, 20 kPa on the ground beside it; the surface is no group of the mesh
+        self.write("""title = "raft"
+[mesh.soil_box.soil]
+width = 10
+size = 0.5
+layers = [{ thickness = 4 }]
+[[solid]]
+group = "soil_1"
+E = 5e7
+poisson = 0.3
+density = 1900
+[[solid]]
+group = "raft"
+E = 3e10
+poisson = 0.2
+density = 2500
+[[support]]
+group = "soil_bottom"
+fixed = ["ux", "uy"]
+[gravity]
+acceleration = [0, -10]
+[[load]]
+group = "meadow"
+pressure = 2e4
+[[interface]]
+name = "base"
+cut = { through = ["soil_1"], level = -1.2, upper = "raft", x = [-1.2, 1.4], height = 0.8, free = "meadow" }
+law = { type = "springs", K_n = 1e9, K_t = 1e9, tangential = "coulomb", friction = 0.5 }
+[[output.history]]
+group = "soil_bottom"
+quantity = "reaction_y"
+[[stage]]
+type = "static"
+""")
+        self.uplift("run", "case.toml", "-o", "r")
+        with open(self.folder / "r" / "histories.csv", newline="") as file:
+            rows = list(csv.reader(file))
+        reaction = float(rows[-1][rows[0].index("soil_bottom.reaction_y [N]")])
+        expected = 10 * (1900 * 10 * 2.8 + 2500 * 2.6 * 0.8) + 2e4 * (10 - 2.6)
+        self.assertAlmostEqual(reaction, expected, delta=1e-8 * expected)
+        model = report_of(self.folder / "r")["model"]
+        (load,) = model["loads"]
+        x, y = next((node["x"], node["y"]) for node in model["nodes"] if node["name"] == load["node"])
+        self.assertLess(abs(y + 1.2), 0.5)
+        self.assertFalse(-1.2 < x < 1.4)
+
     def test_report_is_one_page_with_data(self):
         self.write(BASE.replace("bonded = false\n", "") + "# </script> must not end the page's data\n")
         self.uplift("run", "case.toml", "-o", "r")

@@ -184,7 +184,9 @@ void write_loads(JsonWriter& json, const Drawn& drawn, const Case& read, const B
   for (const DrawnParts::Load& load : drawn.parts.loads) {
     if (load.force.empty()) continue;
     std::string node = load.node >= 0 ? shown_name(built, load.node) : "";
-    if (!load.group.empty())
+    if (const std::optional<int> free = node_on_free_surface(read, built, load.group, drawn.nodes))
+      node = shown_name(built, *free);
+    else if (!load.group.empty())
       if (const std::vector<int> nodes = drawn_of_group(drawn, read, load.group, 1000); !nodes.empty())
         node = name_of_mesh_node(drawn, built, nodes[nodes.size() / 2]);
     json.begin_object().member("node", node).member("fx", load.force[0]).member("fy", load.force[1]);
@@ -254,6 +256,14 @@ void write_points(JsonWriter& json, const BuiltCase& built, const RunResult& res
 }
 
 }  // namespace
+
+std::optional<int> node_on_free_surface(const Case& read, const BuiltCase& built, const std::string& name, const std::vector<int>& drawn) {
+  if (!read.mesh || !read.mesh->free.contains(name) || drawn.empty()) return std::nullopt;
+  const std::vector<FreeFace>& faces = read.mesh->free.at(name);
+  const Vec3& middle = faces[faces.size() / 2].corners.front();
+  return *std::ranges::min_element(
+      drawn, {}, [&](int node) { return (built.model.nodes[static_cast<std::size_t>(node)].position - middle).squaredNorm(); });
+}
 
 void write_uplifted(JsonWriter& json, const Model& model, const std::vector<const Frame*>& frames) {
   json.key("uplifted").begin_object();

@@ -100,7 +100,7 @@ void write_bodies(JsonWriter& json, const BuiltCase& built, const DrawnInSpace& 
   json.end_array();
 }
 
-void write_small_parts(JsonWriter& json, const Case& read, const DrawnInSpace& drawn) {
+void write_small_parts(JsonWriter& json, const Case& read, const BuiltCase& built, const DrawnInSpace& drawn) {
   const DrawnParts& parts = drawn.parts;
   json.key("masses").begin_array();
   for (const DrawnParts::Mass& mass : parts.masses)
@@ -121,7 +121,9 @@ void write_small_parts(JsonWriter& json, const Case& read, const DrawnInSpace& d
   for (const DrawnParts::Load& load : parts.loads) {
     if (load.force.empty()) continue;
     int node = load.node;
-    if (!load.group.empty() && read.mesh) {
+    if (const std::optional<int> free = node_on_free_surface(read, built, load.group, drawn.nodes)) {
+      node = *free;
+    } else if (!load.group.empty() && read.mesh) {
       const std::vector<int> nodes = nodes_of(read.mesh->mesh, read.mesh->mesh.groups.at(load.group));
       node = parts.first_of_mesh + nodes[nodes.size() / 2];
     }
@@ -287,7 +289,7 @@ void write_model(JsonWriter& json, const Case& read, const BuiltCase& built, con
   }
   json.end_array();
   write_bodies(json, built, drawn);
-  write_small_parts(json, read, drawn);
+  write_small_parts(json, read, built, drawn);
   write_borders(json, read, drawn);
   write_interfaces(json, read, built, drawn);
   json.end_object();
