@@ -177,37 +177,53 @@ double JointFilter::end_rows(Footing& footing, const InterfaceSolution& solution
 /// than what the last term takes where theta c has fallen.
 void JointFilter::end(const InterfaceProblem& problem, const InterfaceSolution& solution, const State& now, State& next,
                       JointFilterInput& input) {
-  const double to_mean = 1 / problem.model->scale, loss = 0.5 * (1 + pole_), store = 0.5 / (1 - pole_);
+  // copies: numbers written through pointers might be members
+  const double to_mean = 1 / problem.model->scale, pole = pole_, gain = gain_, loss = 0.5 * (1 + pole), store = 0.5 / (1 - pole);
   Lanes dissipated = 0, storage = 0;
   for (const Part& part : parts_) {
     const int n = part.points, normal = part.components - 1;
     const double* slopes = solution.next_slope.data() + part.first_slope;
     const double *area = part.area.data(), *contact = slopes + (normal * part.components + normal) * n;
-    const auto end_rows = [&](int c, auto is_normal) {
+    const auto end_rows = [&](int c, auto is_normal) __attribute__((always_inline)) {
       const int first = part.first + c * n;
-      const Beginning beginning{gain_, 0.5 * part.stiffness[normal], 0.5 * part.stiffness[c], is_normal};
+      const Beginning beginning{gain, 0.5 * part.stiffness[normal], 0.5 * part.stiffness[c], is_normal};
       const double *plain = solution.plain.data() + first, *force = solution.force.data() + first, *to = solution.opening.data() + first,
                    *from = now.opening.data() + first, *slope = slopes + (c * part.components + c) * n;
       double *coefficient = input.coefficient.data() + first, *lag = input.lag.data() + first,
              *coefficient_next = next.filter.coefficient.data() + first, *filtered_next = next.filter.opening.data() + first,
              *tangent_next = next.filter.tangent.data() + first;
-      for_lanes(n, [=, this, &dissipated, &storage](const auto& at) {
-        const Lanes zero = 0, increment = at(to) - at(from), before = at(lag), ahead = increment - before, here = at(coefficient),
-                    size = at(area);
-        const Lanes added = to_mean * at(force) - size * at(plain);  // N
-        const Lanes wanted = size * here * ahead;
-        const LaneMask acts = here > zero, less = acts && added * wanted < (1 - 1e-6) * wanted * wanted;
-        Lanes kept = choose(acts, here, zero);  // theta c
-        if (any(less)) kept *= choose(less, larger(added / choose(less, wanted, Lanes(1)), zero), Lanes(1));
-        const Lanes filtered = choose(acts, pole_ * before + (1 - pole_) * increment, zero), weight = size * kept;
-        dissipated += weight * (loss * ahead * ahead - store * before * before) + choose(acts, zero, added * increment);
-        storage += weight * filtered * filtered;
-        const Lanes tangent = 2 * at(slope);
-        at.put(coefficient_next, kept);
-        at.put(filtered_next, filtered);
-        at.put(tangent_next, tangent);
-        beginning.put(at, is_normal ? tangent : 2 * at(contact), tangent, kept, filtered, coefficient, lag);
-      });
+      for_lanes(
+          n, [ =, &dissipated, &storage ](const auto& at) __attribute__((always_inline)) {
+            const Lanes zero = 0, tangent = 2 * at(slope), here = at(coefficient), bears = at(force), size = at(area), before = at(lag);
+            at.put(tangent_next, tangent);
+            // most registers go on as they are: in contact, where nothing was cut off, or apart
+            if constexpr (is_normal) {
+              if (!any(gain * tangent != here || bears == zero)) {
+                const Lanes increment = at(to) - at(from), ahead = increment - before, weight = size * here;
+                const Lanes filtered = pole * before + (1 - pole) * increment;
+                dissipated += weight * (loss * ahead * ahead - store * before * before);
+                storage += weight * filtered * filtered;
+                at.put(coefficient_next, here);
+                at.put(filtered_next, filtered);
+                return at.put(lag, filtered);
+              }
+              if (!any(here >= zero || tangent >= beginning.closed || bears != zero || at(plain) != zero)) {
+                at.put(coefficient_next, zero);
+                return at.put(filtered_next, zero);
+              }
+            }
+            const Lanes increment = at(to) - at(from), ahead = increment - before;
+            const Lanes added = to_mean * bears - size * at(plain), wanted = size * here * ahead;  // N
+            const LaneMask acts = here > zero, less = acts && added * wanted < (1 - 1e-6) * wanted * wanted;
+            Lanes kept = choose(acts, here, zero);  // theta c
+            if (any(less)) kept *= choose(less, larger(added / choose(less, wanted, Lanes(1)), zero), Lanes(1));
+            const Lanes filtered = choose(acts, pole * before + (1 - pole) * increment, zero), weight = size * kept;
+            dissipated += weight * (loss * ahead * ahead - store * before * before) + choose(acts, zero, added * increment);
+            storage += weight * filtered * filtered;
+            at.put(coefficient_next, kept);
+            at.put(filtered_next, filtered);
+            beginning.put(at, is_normal ? tangent : 2 * at(contact), tangent, kept, filtered, coefficient, lag);
+          });
     };
     for (int c = 0; c < normal; ++c) end_rows(c, std::false_type());
     end_rows(normal, std::true_type());
