@@ -167,6 +167,60 @@ step = 1e-3
         self.assertGreater(math.sqrt(3 * 2e8 / 20) / (2 * math.pi), 300)
         self.assertIsNone(self.step_of(bounds, "bounce on the closed joint"))
 
+    def test_a_floor_at_the_lip_of_a_joint_resolves_its_impacts(self):
+        # square cells of 1 m: the corner of the block has a quarter of one cell, the soil below it a quarter of two, the point of the joint
+        # half a face; both vibrate on it with w^2 = A K (1/m + 1/m')
+        def step_for(stiffness, place):
+            self.write(f"""title = "lip"
+bonded = false
+[mesh.soil_box.soil]
+width = 8
+size = 1
+[[mesh.soil_box.soil.layers]]
+thickness = 2
+size = 1
+[mesh.soil_box.block]
+width = 4
+height = 4
+size = 1
+[[solid]]
+group = "soil_1"
+shear_wave_speed = 200
+poisson = 0.3
+density = 2000
+[[solid]]
+group = "block"
+E = 1e9
+poisson = 0.2
+density = 400
+[[support]]
+group = "soil_bottom"
+fixed = ["ux", "uy"]
+[[interface]]
+name = "soil"
+surface = {{ group = "interface", lower = ["soil_1"] }}
+law = {{ type = "springs", K_n = {stiffness}, K_t = {stiffness / 2}, tangential = "coulomb", friction = 0.7 }}
+[gravity]
+acceleration = [0, -9.81]
+[[stage]]
+type = "static"
+[[stage]]
+type = "dynamic"
+duration = 1
+step = 1e-3
+[[output.floor_spectrum]]
+name = "lip"
+at = {place}
+direction = [0, 1]
+""")
+            bounds = json.loads(self.uplift("check", "case.toml", "--json").stdout)["step_bounds"]
+            return self.step_of(bounds, "the faces of the joint at a floor")
+
+        for stiffness in (2e9, 2e11):  # 528 Hz; above 1 kHz as 1 kHz
+            own = math.sqrt(0.5 * stiffness * (1 / 1000 + 1 / 100)) / (2 * math.pi)
+            self.assertAlmostEqual(step_for(stiffness, "[-2, 0]") * 8 * min(own, 1000), 1, delta=1e-6)
+        self.assertIsNone(step_for(2e9, "[-2, 1]"))
+
     def test_a_mode_without_damping_keeps_the_phase_error_until_the_next_impact(self):
         # two masses on the springs k of the column and K of the joint: w^2 of K + k and k by hand
         head, footing, column, joint = 2e4, 1e4, 4e7, 3 * 2e9

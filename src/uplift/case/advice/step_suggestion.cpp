@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <utility>
 
 #include "uplift/base/format.h"
@@ -17,6 +18,7 @@ constexpr double steps_a_period = 20, highest_of_structure = 50;                
 constexpr double steps_a_period_of_vibration = 16, highest_of_vibration = 300;  // Hz
 constexpr double steps_a_period_of_bounces = 8, highest_of_bounces = 1000;  // Hz: faster impacts take less than a twentieth of the window
 constexpr double steps_a_period_of_floors = 40, highest_of_floors = 33;     // Hz: above, the spectrum of an earthquake is that of the peak
+constexpr double least_width_of_peaks = 0.005;                              // damping ratios of a mode and of the equipment together
 constexpr double more_for_constraints = 2;
 constexpr double accepted_difference = 0.01, least_step = 1e-5, most_step = 0.1;
 
@@ -87,14 +89,79 @@ void bound_by_contact_mesh(const Case& read, const BuiltCase& built, std::vector
   }
 }
 
-/// Floor spectra ask for more than the forces: the period error of the scheme, (w h)^2/12, moves their peaks.
-void bound_by_floors(const RunPlan& plan, std::vector<StepBound>& bounds) {
-  double highest = 0;
-  for (const FloorRequest& floor : plan.floors)
+/// Floor spectra ask for more than the forces: the period error of the scheme, (w h)^2/12, moves their peaks. Equipment that is tuned to a
+/// mode feels it by about half of 1/(damping of the mode + its own): the less both are damped, the narrower is the peak.
+void bound_by_floors(const RunPlan& plan, const ResolvedModes& modes, std::vector<StepBound>& bounds) {
+  double highest = 0, least_damping = 1;
+  for (const FloorRequest& floor : plan.floors) {
     if (!floor.frequencies.empty()) highest = std::max(highest, std::min(floor.frequencies.back(), highest_of_floors));
-  if (highest > 0)
-    bounds.push_back({1 / (steps_a_period_of_floors * highest),
-                      fmt::format("forty steps a period of the floor spectra at {}", format_quantity(highest, "Hz"))});
+    for (const double damping : floor.dampings) least_damping = std::min(least_damping, damping);
+  }
+  if (!(highest > 0)) return;
+  bounds.push_back({1 / (steps_a_period_of_floors * highest),
+                    fmt::format("forty steps a period of the floor spectra at {}", format_quantity(highest, "Hz"))});
+  StepBound smallest;
+  for (const std::vector<ResolvedMode>* each : {&modes.bonded, &modes.base_free})
+    for (const ResolvedMode& mode : *each) {
+      if (!(mode.frequency > 0 && mode.frequency <= highest)) continue;
+      const double width = std::max(mode.damping + least_damping, least_width_of_peaks);
+      const double steps = 2 * std::numbers::pi / std::sqrt(12 * accepted_difference * 2 * width), step = 1 / (steps * mode.frequency);
+      if (smallest.step > 0 && step >= smallest.step) continue;
+      smallest = {step, fmt::format("{:.0f} steps a period of the peak of the floor spectra at {}, where the mode and the equipment are "
+                                    "damped by {:.2g} % together",
+                                    steps, format_quantity(mode.frequency, "Hz"), 100 * width)};
+    }
+  if (smallest.step > 0) bounds.push_back(std::move(smallest));
+}
+
+/// Masses of the nodes [kg]: sums of the rows of the mass matrix along one axis.
+Vector masses_of_nodes(const Model& model) {
+  const Sparse mass = assembled(model, &Local::mass);
+  Vector sums = Vector::Zero(static_cast<Index>(model.nodes.size()));
+  const int axis = model.space.up();
+  for (Index column = 0; column < mass.outerSize(); ++column)
+    for (Sparse::InnerIterator entry(mass, column); entry; ++entry)
+      if (model.space.index_of(entry.row()) == axis && model.space.index_of(column) == axis)
+        sums[model.space.node_of(entry.row())] += entry.value();
+  return sums;
+}
+
+/// A floor at the lip of a joint feels what each closing does to the two faces there: half a period of their own vibration on the closed
+/// joint, w^2 = A K (1/m + 1/m') with the masses of the nodes.
+void bound_by_lips(const BuiltCase& built, std::vector<StepBound>& bounds) {
+  const Model& model = built.model;
+  if (built.plan.floors.empty() || model.interfaces.empty() || model.distributed != nullptr) return;
+  std::set<int> floors;
+  for (const FloorRequest& floor : built.plan.floors) floors.insert(floor.node);
+  const SparseRows rows = model.assembly.b;
+  Vector masses;
+  double highest = 0;
+  Index first = 0;
+  for (const Interface& joint : model.interfaces) {
+    const int points = joint.batch.points, components = joint.batch.components;
+    double stiffness[most_components] = {};
+    if (joint.law != nullptr && joint.batch.rotations == 0) joint.law->closed_stiffness(components, stiffness);
+    for (int row = 0; row < components * points; ++row) {
+      bool at_floor = false;
+      for (SparseRows::InnerIterator entry(rows, first + row); entry; ++entry)
+        at_floor = at_floor || floors.contains(static_cast<int>(model.space.node_of(entry.col())));
+      if (!at_floor) continue;
+      if (masses.size() == 0) masses = masses_of_nodes(model);
+      double mobility = 0;  // 1/kg
+      for (SparseRows::InnerIterator entry(rows, first + row); entry; ++entry)
+        if (const double mass = masses[model.space.node_of(entry.col())];
+            mass > 0 && model.space.index_of(entry.col()) < model.space.dimension)
+          mobility += entry.value() * entry.value() / mass;
+      const double square = joint.weight[row % points] * stiffness[row / points] * mobility;
+      highest = std::max(highest, std::sqrt(square) / (2 * std::numbers::pi));
+    }
+    first += joint.rows();
+  }
+  if (!(highest > 0)) return;
+  const double resolved = std::min(highest, highest_of_bounces);
+  bounds.push_back({1 / (steps_a_period_of_bounces * resolved),
+                    fmt::format("eight steps a period of {}: the faces of the joint at a floor vibrate on it with {}",
+                                format_quantity(resolved, "Hz"), format_quantity(highest, "Hz"))});
 }
 
 void bound_by_loads(const BuiltCase& built, std::vector<StepBound>& bounds) {
@@ -174,7 +241,8 @@ std::vector<StepBound> step_bounds(const Case& read, const BuiltCase& built, con
     bound_by_bounces(modes.moving, demand, bounds);
   }
   bound_by_contact_mesh(read, built, bounds);
-  bound_by_floors(built.plan, bounds);
+  bound_by_floors(built.plan, modes, bounds);
+  bound_by_lips(built, bounds);
   bound_by_loads(built, bounds);
   std::ranges::stable_sort(bounds, {}, &StepBound::step);
   return bounds;
