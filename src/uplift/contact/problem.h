@@ -49,7 +49,7 @@ struct ResidualScratch {
 
 /// What a method has found.
 struct InterfaceSolution {
-  Vector z;             // on entry the first guess
+  Vector z;             // on entry the first guess; a method may leave it behind where ContactModel::forces_suffice
   Vector opening;       // rows, end of step [m]
   Vector force;         // rows, p as it enters the balance [N]: scale * area * traction, tension > 0
   Vector plain;         // rows, with a joint filter: path average of the law alone [Pa]

@@ -7,6 +7,7 @@
 
 #include "uplift/dynamics/split_response.h"
 #include "uplift/linear/large.h"
+#include "uplift/math/columns.h"
 #include "uplift/math/small.h"
 #include "uplift/math/upper_sum.h"
 #include "uplift/model/matrix_sum.h"
@@ -25,6 +26,14 @@ bool is_diagonal(const Sparse& matrix) {
   return true;
 }
 
+/// With rows of zeros that fill whole registers, where it is not small.
+Matrix full_of(const Matrix& matrix) {
+  if (matrix.rows() <= small_bulk) return matrix;
+  Matrix full = Matrix::Zero(whole_registers(matrix.rows()), matrix.cols());
+  full.topRows(matrix.rows()) = matrix;
+  return full;
+}
+
 /// y = A x, A symmetric; that of a reduced model does not fit into the first cache.
 void multiply_full(const Matrix& a, const Vector& x, Vector& y) {
   if (a.rows() > small_bulk)
@@ -37,7 +46,7 @@ void multiply_full(const Matrix& a, const Vector& x, Vector& y) {
 
 BulkMatrix::BulkMatrix(const Sparse& matrix, bool dense)
     : zero_(matrix.nonZeros() == 0), sparse_(dense && !is_diagonal(matrix) ? nullptr : &matrix) {
-  if (sparse_ == nullptr) full_ = Matrix(matrix);
+  if (sparse_ == nullptr) full_ = full_of(matrix);
 }
 
 BulkMatrix::BulkMatrix(std::vector<DistributedTerm> terms, const Sparse* here)
@@ -119,7 +128,7 @@ std::string diagonal_range(const Vector& diagonal, const Model& model) {
 class InverseFactor final : public Factor {
  public:
   explicit InverseFactor(const Matrix& inverse) : inverse_(inverse) {}
-  void solve(const Matrix& b, Matrix& x) const override { x = (inverse_ * b).eval(); }
+  void solve(const Matrix& b, Matrix& x) const override { x = (inverse_.topRows(inverse_.cols()) * b).eval(); }
   double nonzeros() const override { return static_cast<double>(inverse_.size()); }
 
  private:
@@ -160,7 +169,7 @@ void BulkFactor::factorise(const SymmetricSum& matrix, const Sparse* b, const Li
   factor_ = std::move(result.factor);
   if (small_) {
     factor_->solve(Matrix::Identity(matrix.rows(), matrix.rows()), inverse_);
-    inverse_ = (0.5 * (inverse_ + inverse_.transpose())).eval();
+    inverse_ = full_of(0.5 * (inverse_ + inverse_.transpose()));
     if (matrix.there.empty() && is_diagonal(matrix.here)) inverse_diagonal_ = inverse_.diagonal();
   }
 }

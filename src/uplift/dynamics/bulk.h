@@ -102,6 +102,8 @@ class BulkFactor {
   void solve(const Matrix& b, Matrix& x, double residual, LinearCounts& counts) const;
   /// Of the factor (FactorWithReach) [m]; 0 where the inverse is kept.
   double reach() const;
+  /// A^-1 itself, so that a solve is a product.
+  bool keeps_inverse() const { return small_; }
   /// How forces on the rows of B spread; through a split factor (of the same B) as its backward half, see split_spread. This factor must
   /// stay alive, and where it is. `counts`, of the back-solves that the spread takes, must stay alive too.
   Spread spread(const Sparse& b, LinearCounts& counts) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "uplift/math/columns.h"
 #include "uplift/math/dense.h"
 #include "uplift/math/small.h"
 #include "uplift/model/base_size.h"
@@ -47,6 +48,17 @@ ContactModel blocks_of(const Model& model, const Behaviours& behaviours) {
   return contact;
 }
 
+namespace {
+
+constexpr std::size_t most_touched = 64;  // unknowns whose columns of B are kept as a full matrix
+
+/// That of a reduced model, with many coordinates.
+bool is_full(const Sparse& b) {
+  return b.cols() > static_cast<Index>(most_touched) && b.nonZeros() > b.size() / 2;
+}
+
+}  // namespace
+
 Condensed::Condensed(const Model& model, const Sparse& b, const Vector& gap, bool gap_moves, std::shared_ptr<const BulkFactor> factor,
                      ContactModel frame, const ContactMethod& method, LinearCounts& counts)
     : b_(b), gap_(gap), factor_(std::move(factor)), work_(counts), method_(method), method_work_(method.make_work()) {
@@ -60,7 +72,14 @@ Condensed::Condensed(const Model& model, const Sparse& b, const Vector& gap, boo
   } else {
     Spread spread = factor_->spread(b, counts);
     frame.factor = std::move(spread.factor);
-    spread_ = std::move(spread.spread);
+    if (is_full(b) && factor_->keeps_inverse() && frame.shift.size() == 0) {
+      full_b_.setZero(whole_registers(b.rows()), b.cols());
+      full_b_.topRows(b.rows()) = b;
+      of_rows_.setZero(full_b_.rows());
+      frame.forces_suffice = true;
+    } else {
+      spread_ = std::move(spread.spread);
+    }
   }
   problem_ = problem_of(std::make_shared<const ContactModel>(std::move(frame)));
   if (split_ == nullptr && solved_ == nullptr) list_touched(model, gap_moves);
@@ -68,10 +87,10 @@ Condensed::Condensed(const Model& model, const Sparse& b, const Vector& gap, boo
 
 void Condensed::list_touched(const Model& model, bool gap_moves) {
   free_.setZero(model.free());
+  if (full_b_.size() > 0) return;
   touched_ = touched_unknowns(b_);
-  if (touched_.size() > 64) {
+  if (touched_.size() > most_touched) {
     touched_.clear();
-    if (b_.nonZeros() > b_.size() / 2) full_b_ = b_;  // of a reduced model
     return;
   }
   touched_b_.setZero(b_.rows(), static_cast<Eigen::Index>(touched_.size()));
@@ -100,10 +119,12 @@ void Condensed::free_opening(const Vector& right, const Vector& displacement) {
   if (touched_.empty()) {
     touched_value_ = displacement + free_;
     problem_.free_opening = gap_;
-    if (full_b_.size() > 0)
-      problem_.free_opening.noalias() += full_b_ * touched_value_;
-    else
+    if (full_b_.size() > 0) {
+      of_rows_.noalias() = full_b_ * touched_value_;
+      problem_.free_opening += of_rows_.head(gap_.size());
+    } else {
       problem_.free_opening.noalias() += b_ * touched_value_;
+    }
     return;
   }
   if (to_free_increment_.size() > 0) {
@@ -166,6 +187,14 @@ Outcome Condensed::contact_step(const Vector& right, const StepStart& start, Vec
   return outcome;
 }
 
+/// du = A^-1 (R - B^T p)
+void Condensed::respond_to_forces(const Vector& right, Vector& increment) {
+  of_rows_.head(solution_.force.size()) = solution_.force;
+  loaded_ = right;
+  loaded_.noalias() -= full_b_.transpose() * of_rows_;
+  factor_->solve(loaded_, increment, work_);
+}
+
 /// du = du_free + X z
 void Condensed::add_spread(Vector& increment) const {
   constexpr Index few_columns = 12;
@@ -185,6 +214,8 @@ Outcome Condensed::solve_interfaces(const Vector& right, const Vector& displacem
   if (!outcome.converged) return outcome;
   if (split_ != nullptr)
     split_->backward(solution_.z, increment);
+  else if (full_b_.size() > 0)
+    respond_to_forces(right, increment);
   else
     add_spread(increment);
   return outcome;

@@ -54,7 +54,8 @@ class StepSolver {
 };
 
 /// The condensed step: the free response, the small interface problem, and what its forces add. Through a split factor (SplitResponse) that
-/// is one back-solve; through any other one back-solve and the kept spread of the interface forces; with a kept inverse no back-solve;
+/// is one back-solve; through any other one back-solve and the kept spread of the interface forces; with a kept inverse no back-solve, and
+/// where B is full no spread either: B itself, which the free openings have just brought into the cache, takes its place;
 /// through a factor with a reach some solves (SolvedResponse).
 class Condensed final : public StepSolver {
  public:
@@ -74,6 +75,7 @@ class Condensed final : public StepSolver {
   void free_opening(const Vector& right, const Vector& displacement);
   Outcome solve_interfaces(const Vector& right, const Vector& displacement, Vector& increment);
   void add_spread(Vector& increment) const;
+  void respond_to_forces(const Vector& right, Vector& increment);
   Outcome free_step(const Vector& right, Vector& increment);
   Outcome contact_step(const Vector& right, const StepStart& start, Vector& increment);
 
@@ -85,15 +87,15 @@ class Condensed final : public StepSolver {
   std::unique_ptr<SolvedResponse> solved_;
   Matrix touched_b_;  // columns of B that are not empty
   std::vector<int> touched_;
-  Matrix full_b_;             // B where it is full; else empty
-  Matrix spread_;             // X: du = du_free + X z
+  Matrix full_b_;             // B where it is full and A^-1 is kept, of a reduced model, with rows of zeros (whole_registers); else empty
+  Matrix spread_;             // X: du = du_free + X z; empty where B is full: du = A^-1 (R - B^T p)
   Matrix to_free_increment_;  // inverse of its touched rows where they are as many as its columns and few, and the gap stays: C = B X; else
                               // empty
   InterfaceProblem problem_;
   InterfaceSolution solution_;
   const ContactMethod& method_;
   std::unique_ptr<MethodWork> method_work_;
-  Vector free_, touched_value_;
+  Vector free_, touched_value_, of_rows_, loaded_;
 };
 
 }  // namespace uplift

@@ -24,6 +24,10 @@ void add_rows(const double* a, std::ptrdiff_t stride, double scale, const std::v
 
 }  // namespace
 
+Index whole_registers(Index rows) {
+  return (rows + lanes - 1) / lanes * lanes;
+}
+
 void add_columns_of(const Matrix& a, double scale, const std::vector<Index>& chosen, const double* x, double* y) {
   constexpr int many = 8;
   const std::ptrdiff_t rows = a.rows();

@@ -154,4 +154,12 @@ void LuInPlace::solve(double* x) const {
   part.triangularView<upper_triangle>().solveInPlace(solution);
 }
 
+void LuInPlace::solve(Matrix& x) const {
+  for (Index k = 0; k < order_; ++k)
+    if (const Index pivot = swaps_[static_cast<std::size_t>(k)]; pivot != k) x.row(k).swap(x.row(pivot));
+  const auto part = matrix_.topLeftCorner(order_, order_);
+  part.triangularView<Eigen::UnitLower>().solveInPlace(x);
+  part.triangularView<upper_triangle>().solveInPlace(x);
+}
+
 }  // namespace uplift

@@ -17,6 +17,7 @@ class LuInPlace {
   bool factorise(Index n);
   /// A x = b in place.
   void solve(double* x) const;
+  void solve(Matrix& x) const;
 
  private:
   void factorise_block(Index from, Index end);

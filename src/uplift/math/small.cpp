@@ -30,6 +30,7 @@ void add_symmetric_columns(const Matrix& a, std::ptrdiff_t first, const double* 
     const WholeLanes at{i};
     const Lanes here = at(x);
     Lanes sum = at(y);
+#pragma GCC unroll 8
     for (int k = 0; k < columns; ++k) {
       const Lanes entry = at(column[k]);
       sum += entry * factor[k];

@@ -22,7 +22,8 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
       stepper_(stepper),
       views_(views),
       result_(result),
-      floors_(model, plan, steps, step, result) {
+      floors_(model, plan, steps, step, result),
+      pictures_(model, plan, result.frames) {
   wants_acceleration_ = records_accelerations(plan);
   for (const Frame& frame : result.frames)
     for (const double share : frame.uplifted) peak_uplift_ = std::max(peak_uplift_, share);
@@ -307,6 +308,7 @@ void Recorder::combine(std::size_t count) {
 
 void Recorder::finish() {
   flush();
+  pictures_.finish();
   complete_peak();
   if (peak_frame_.displacement.size() == 0) return;
   const auto next = std::ranges::lower_bound(result_.frames, peak_frame_.time, {}, &Frame::time);
@@ -315,6 +317,7 @@ void Recorder::finish() {
 
 void Recorder::keep(RunState& run) {
   flush();
+  pictures_.finish();
   complete_peak();
   run.recorded_until = before_;
   run.peak_frame = peak_frame_;
@@ -328,8 +331,7 @@ void Recorder::resume(const RunState& run) {
 }
 
 void Recorder::picture(const State& state) {
-  result_.frames.push_back(frame_of(state));
-  result_.frames.back().displacement = displacement_at(state.time, state.load_factor, state.displacement);
+  pictures_.add(frame_of(state), state);
 }
 
 void Recorder::note_largest_uplift() {
@@ -345,23 +347,8 @@ void Recorder::note_largest_uplift() {
 
 void Recorder::complete_peak() {
   if (peak_coordinates_.size() == 0) return;
-  peak_frame_.displacement = displacement_at(peak_frame_.time, peak_load_factor_, peak_coordinates_);
+  peak_frame_.displacement = pictures_.displacement({peak_frame_.time, peak_load_factor_}, peak_coordinates_);
   peak_coordinates_.resize(0);
-}
-
-/// Of all unknowns, or of those of the pictured nodes.
-Vector Recorder::displacement_at(double time, double load_factor, const Vector& coordinates) const {
-  if (!plan_.pictured.empty()) {
-    const int each = model_.space.unknowns();
-    Vector displacement(each * std::ssize(plan_.pictured));
-    for (Index i = 0; i < displacement.size(); ++i)
-      displacement[i] = model_.full(each * plan_.pictured[static_cast<std::size_t>(i / each)] + static_cast<int>(i % each), coordinates, 0,
-                                    {time, load_factor});
-    return displacement;
-  }
-  Vector displacement = model_.reduction * coordinates;
-  for (const PrescribedMotion& motion : model_.motions) displacement += motion.shape * (load_factor * motion.function->value(time));
-  return displacement;
 }
 
 /// Without its displacements.

@@ -8,6 +8,7 @@
 #include "uplift/run/base_motion.h"
 #include "uplift/run/floor_record.h"
 #include "uplift/run/force_record.h"
+#include "uplift/run/pictures.h"
 #include "uplift/run/run.h"
 #include "uplift/run/run_state.h"
 
@@ -55,7 +56,6 @@ class Recorder {
   double made(const Source& source) const;
   double ground(const Request& request, double time) const;
   Frame frame_of(const State& state) const;
-  Vector displacement_at(double time, double load_factor, const Vector& coordinates) const;
   void complete_peak();
   void flush();
   /// The combined motions of the first `count` of the last steps.
@@ -69,6 +69,7 @@ class Recorder {
   const std::vector<InterfaceView>& views_;
   RunResult& result_;
   FloorRecorder floors_;
+  Pictures pictures_;
   std::unique_ptr<ForceRecorder> forces_;        // null where no forces are asked for
   std::vector<Source> placed_, entries_, made_;  // columns of each kind
   std::vector<BaseMotion> bases_;                // of every interface, when a column is about the motion of a base; else empty
@@ -88,8 +89,7 @@ class Recorder {
   Vector acceleration_;
   Frame peak_frame_;        // at the largest uplift of this stage, when it is larger than in the frames of the earlier stages
   double peak_uplift_ = 0;  // largest share over all interfaces and steps
-  // Its displacements are made when they are asked for, from the coordinates: of a reduced model they take as long as several steps.
-  Vector peak_coordinates_;  // empty: they are made
+  Vector peak_coordinates_;  // of its displacements, which are made when they are asked for; empty: they are made
   double peak_load_factor_ = 0;
 };
 

@@ -37,6 +37,10 @@ TEST(PartialLu, SolvesSystemsOfEveryOrder) {
     lu.solve(b.data());
     const double condition = a.norm() * inverse(a).norm();
     EXPECT_LT((b - x).norm(), 1e-15 * condition * x.norm()) << "seed 5, order " << n;
+    const Matrix several = Matrix::NullaryExpr(n, 3, [](Index i, Index j) { return std::cos(static_cast<double>(i + 2 * j)); });
+    Matrix right = a * several;
+    lu.solve(right);
+    EXPECT_LT((right - several).norm(), 1e-15 * condition * several.norm()) << "seed 5, order " << n;
   }
 }
 

@@ -16,14 +16,23 @@ constexpr int most_iterations = 30, patience = 12;
 constexpr double worth_a_factor = 4;  // iterations of a chord
 constexpr double of_change = 8;       // a chord leaves about so many times the change of the slopes
 constexpr double most_contraction = 0.5;
-constexpr double price_of_reference = 10;    // factors of all rows
 constexpr int patience_with_candidate = 20;  // factors
+constexpr int most_updates = 50;             // of a reference, before round-off is left behind
 constexpr double negligible = 0.1;           // of what an iteration may leave: all that it takes as zero
 constexpr double same_slope = 1e-10;         // of a slope: a smaller difference is round-off
 
-double cubed(std::size_t rows) {
+// Prices in cubes of rows of a factor, the time that its elimination takes (docs/performance.md).
+
+/// Of a factor, and of what an iteration does with it.
+double price_of_factor(std::size_t rows) {
   const double n = static_cast<double>(rows);
-  return n * n * n;
+  return n * (n * (n + 50) + 600);
+}
+
+/// Of a new reference with other slopes in so many of all rows.
+double price_of_reference(std::size_t rows, Index all) {
+  const double n = static_cast<double>(rows), m = static_cast<double>(all);
+  return m * m * (1.2 * n + 30) + n * n * n;
 }
 
 }  // namespace
@@ -39,15 +48,16 @@ void RowNewton::begin(const InterfaceProblem& problem) {
   if (seen_.is(model)) return;
   seen_.take(model);
   const Index rows = model.rows();
-  compliance_.resize(rows, rows);
-  compliance_.noalias() = model.factor * model.factor.transpose();
+  compliance_.setZero(whole_registers(rows), rows);
+  compliance_.topRows(rows).noalias() = model.factor * model.factor.transpose();
   lu_.size(rows);
-  reference_compliance_.resize(rows, rows);
+  reference_compliance_.setZero(compliance_.rows(), rows);
   valid_ = slow_ = follows_ = has_reference_ = from_reference_ = false;
-  candidate_age_ = 0;
-  for (Vector* v : {&force_, &opening_, &rest_, &moved_, &origin_force_, &origin_opening_, &opening_step_, &force_step_, &part_, &sum_,
-                    &from_, &end_, &kept_, &product_, &apart_})
+  candidate_age_ = updates_ = 0;
+  for (Vector* v : {&force_, &opening_, &rest_, &origin_force_, &origin_opening_, &opening_step_, &force_step_, &part_, &sum_, &from_,
+                    &end_, &kept_, &product_, &apart_})
     v->setZero(rows);
+  moved_.setZero(compliance_.rows());
   for (std::vector<Index>* each : {&rows_, &other_rows_, &bent_}) {
     each->clear();
     each->reserve(static_cast<std::size_t>(rows));
@@ -102,50 +112,81 @@ void RowNewton::rows_apart(const Vector& slopes, const Vector& from, std::vector
   }
 }
 
+/// The changes of the slopes of these rows with respect to their own openings, where they depend on no others; else false.
+bool RowNewton::own_changes(const std::vector<Index>& rows) {
+  Index first_slope = 0;
+  for (const Block& block : problem_->model->blocks) {
+    const Index n = block.batch.points, components = block.batch.components;
+    for (Index a = 0; a < components; ++a)
+      for (Index c = 0; c < components; ++c) {
+        const auto slopes = change_.segment(first_slope + (a * components + c) * n, n);
+        if (a == c)
+          product_.segment(block.first + a * n, n) = slopes;
+        else if (!slopes.isZero(0))
+          return false;
+      }
+    first_slope += block.slopes();
+  }
+  for (std::size_t i = 0; i < rows.size(); ++i) part_[static_cast<Index>(i)] = product_[rows[i]];
+  return true;
+}
+
 /// I + change * compliance, of these rows and columns.
 void RowNewton::fill(const Matrix& compliance, const std::vector<Index>& rows) {
   const Index n = static_cast<Index>(rows.size());
+  const bool own = own_changes(rows);
   for (Index j = 0; j < n; ++j) {
-    slope_product(change_, compliance.col(rows[static_cast<std::size_t>(j)]).data(), product_.data());
+    const double* of_row = compliance.col(rows[static_cast<std::size_t>(j)]).data();
     double* column = lu_.column(j);
-    for (Index i = 0; i < n; ++i) column[i] = product_[rows[static_cast<std::size_t>(i)]];
+    if (own) {
+      for (Index i = 0; i < n; ++i) column[i] = part_[i] * of_row[rows[static_cast<std::size_t>(i)]];
+    } else {
+      slope_product(change_, of_row, product_.data());
+      for (Index i = 0; i < n; ++i) column[i] = product_[rows[static_cast<std::size_t>(i)]];
+    }
     column[j] += 1;
   }
 }
 
-/// F0 = (I + F k0)^-1 F of the slopes k0.
+/// The compliance with other slopes, from that of the reference or of no slopes: with the changes q of the slopes, which are not zero in
+/// the rows R alone,
+///     (I + F0 q)^-1 F0 = F0 - F0_R (I + (q F0)_RR)^-1 (q F0)_R
 void RowNewton::refer_to(const Vector& slopes) {
-  rows_apart(slopes, none_, rows_);
-  change_ = slopes;
-  fill(compliance_, rows_);
+  if (updates_ == most_updates) has_reference_ = false;
+  choose_rows(slopes);
+  updates_ = from_reference_ ? updates_ + 1 : 0;
+  if (!from_reference_) reference_compliance_ = compliance_;
+  change_ = slopes - (from_reference_ ? reference_ : none_);
+  fill(reference_compliance_, rows_);
   const Index n = static_cast<Index>(rows_.size());
   has_reference_ = lu_.factorise(n);
   if (!has_reference_) return;
   reference_ = slopes;
-  for (Index j = 0; j < compliance_.cols(); ++j) {  // F0 = F (I + Q), (I + k0 F) Q = -k0 F in the rows of k0
-    slope_product(slopes, compliance_.col(j).data(), product_.data());
-    for (Index i = 0; i < n; ++i) part_[i] = -product_[rows_[static_cast<std::size_t>(i)]];
-    lu_.solve(part_.data());
-    sum_.setZero();
-    for (Index i = 0; i < n; ++i) sum_[rows_[static_cast<std::size_t>(i)]] = part_[i];
-    sum_[j] += 1;
-    reference_compliance_.col(j).noalias() = compliance_ * sum_;
+  chosen_.resize(reference_compliance_.rows(), n);
+  images_.resize(n, reference_compliance_.cols());
+  for (Index i = 0; i < n; ++i) chosen_.col(i) = reference_compliance_.col(rows_[static_cast<std::size_t>(i)]);
+  for (Index j = 0; j < images_.cols(); ++j) {
+    slope_product(change_, reference_compliance_.col(j).data(), product_.data());
+    for (Index i = 0; i < n; ++i) images_(i, j) = product_[rows_[static_cast<std::size_t>(i)]];
   }
+  lu_.solve(images_);
+  reference_compliance_.noalias() -= chosen_ * images_;
 }
 
-/// Takes the candidate for the reference, and says so, when it would have spared its price since it is the candidate. `paid`: cube of the
-/// rows of a factor without it.
+/// Takes the candidate for the reference, and says so, when it would have spared its price since it is the candidate. `paid`: for a factor
+/// without it.
 bool RowNewton::look_for_reference(const Vector& slopes, double paid) {
   bool made = false;
   if (candidate_age_ > 0) {
     rows_apart(slopes, candidate_, other_rows_);
-    spared_ += paid - cubed(other_rows_.size());
-    const double all = static_cast<double>(compliance_.rows());
-    made = spared_ > price_of_reference * all * all * all;
+    spared_ += paid - price_of_factor(other_rows_.size());
+    made = spared_ > candidate_price_;
     if (made) refer_to(candidate_);
   }
   if (made || candidate_age_ == 0 || candidate_age_ > patience_with_candidate) {
     candidate_ = slopes;
+    rows_apart(candidate_, has_reference_ ? reference_ : none_, other_rows_);
+    candidate_price_ = price_of_reference(other_rows_.size(), compliance_.cols());
     spared_ = 0;
     candidate_age_ = 0;
   }
@@ -168,7 +209,7 @@ bool RowNewton::factorise(const Vector& slopes) {
   valid_ = false;
   if (!slopes.allFinite()) return false;
   choose_rows(slopes);
-  if (look_for_reference(slopes, cubed(rows_.size()))) choose_rows(slopes);
+  if (look_for_reference(slopes, price_of_factor(rows_.size()))) choose_rows(slopes);
   slopes_ = slopes;
   change_ = slopes - (from_reference_ ? reference_ : none_);
   fill(from_reference_ ? reference_compliance_ : compliance_, rows_);
@@ -219,8 +260,8 @@ bool RowNewton::direction(const Vector& slopes, InterfaceSystems& counts) {
     sum_[row] = part_[i];
     force_step_[row] += part_[i];
   }
-  opening_step_ = -moved_;
-  add_columns_of(compliance, -1, rows_, sum_.data(), opening_step_.data());
+  add_columns_of(compliance, 1, rows_, sum_.data(), moved_.data());
+  opening_step_ = -moved_.head(opening_step_.size());
   if (from_reference_) {
     slope_product(reference_, opening_step_.data(), product_.data());
     force_step_ += product_;
@@ -256,26 +297,37 @@ void RowNewton::shorten(double before, NewtonWork& work, InterfaceSolution& solu
   }
 }
 
-/// Coordinates of the forces, openings and laws at them, and G = z + C^T p = C^T s.
-void RowNewton::look_at_coordinates(NewtonWork& work, InterfaceSolution& solution) {
-  const Matrix& c = problem_->model->factor;
-  solution.z.noalias() = c.transpose() * force_;
-  solution.z *= -1;
-  opening_ = problem_->free_opening;
-  opening_.noalias() += c * solution.z;
+/// Openings of the forces, laws at them, and s.
+void RowNewton::look_at_forces(NewtonWork& work, InterfaceSolution& solution) {
+  opening_of(force_, opening_);
   solution.opening = opening_;
   evaluate_laws(*problem_, {}, true, work, solution);
   rest_ = solution.force - force_;
-  work.gradient.noalias() = c.transpose() * rest_;
 }
 
-/// Whether the forces that the iteration has arrived at solve the problem, by the measure of the general method.
+/// free opening - F P
+void RowNewton::opening_of(const Vector& force, Vector& opening) {
+  small::multiply_symmetric(compliance_, force.data(), product_.data());
+  opening = problem_->free_opening - product_;
+}
+
+/// Whether the forces that the iteration has arrived at solve the problem: |G| = |C^T s| against |z| = |C^T P|, for which the sum of
+/// sqrt(F_ii) |s_i| is a bound.
 bool RowNewton::is_solution(double tolerance, NewtonWork& work, InterfaceSolution& solution, Result& result) {
-  look_at_coordinates(work, solution);
-  const double size = work.gradient.norm(), scale = balance_scale(*problem_, work, solution);
+  look_at_forces(work, solution);
+  const double scale = std::sqrt(std::max(0.0, force_.dot(problem_->free_opening - opening_)));
+  double size = share_.dot(rest_.cwiseAbs());
+  if (!(size <= tolerance * scale)) {
+    solution.z.noalias() = -(problem_->model->factor.transpose() * force_);
+    work.gradient.noalias() = problem_->model->factor.transpose() * rest_;
+    size = work.gradient.norm();
+  }
   result.residual = size / std::max(scale, 1e-300);
-  const double noise = 8 * std::sqrt(static_cast<double>(solution.z.size()));
-  result.converged = size <= tolerance * scale || (result.residual <= 1e-9 && size <= noise * balance_round_off(*problem_, work, solution));
+  result.converged = size <= tolerance * scale;
+  if (!result.converged && result.residual <= 1e-9) {
+    const double noise = 8 * std::sqrt(static_cast<double>(solution.z.size()));
+    result.converged = size <= noise * balance_round_off(*problem_, work, solution);
+  }
   return result.converged;
 }
 
@@ -315,6 +367,8 @@ void RowNewton::guess(NewtonWork& work, InterfaceSolution& solution) {
   const InterfaceProblem& problem = *problem_;
   if (follows_ && (end_ - problem.from).cwiseAbs().maxCoeff() <= 1e-8 * (end_ - from_).cwiseAbs().maxCoeff())
     solution.opening = 2 * problem.from - from_;
+  else if (problem.model->forces_suffice)
+    opening_of(solution.force, solution.opening);
   else {
     solution.opening = problem.free_opening;
     solution.opening.noalias() += problem.model->factor * solution.z;
@@ -322,8 +376,7 @@ void RowNewton::guess(NewtonWork& work, InterfaceSolution& solution) {
   opening_ = solution.opening;
   evaluate_laws(problem, {}, true, work, solution);
   force_ = solution.force;
-  origin_opening_.noalias() = compliance_ * force_;
-  origin_opening_ = problem.free_opening - origin_opening_;
+  opening_of(force_, origin_opening_);
   opening_step_ = origin_opening_ - opening_;
   slope_product(work.slope, opening_step_.data(), rest_.data());
   opening_ = origin_opening_;
@@ -332,16 +385,22 @@ void RowNewton::guess(NewtonWork& work, InterfaceSolution& solution) {
 RowNewton::Result RowNewton::solve(const InterfaceProblem& problem, double tolerance, NewtonWork& work, InterfaceSolution& solution) {
   Result result;
   begin(problem);
-  kept_ = solution.z;
   if (!problem.free_opening.allFinite()) return result;
+  const bool by_forces = problem.model->forces_suffice;
+  kept_ = by_forces ? solution.force : solution.z;
   guess(work, solution);
   follows_ = result.arrived = iterate(tolerance, work, solution, result);
   if (result.arrived) {
     from_ = problem.from;
     end_ = opening_;
   } else {
-    solution.z = kept_;
+    has_reference_ = false;
   }
+  if (by_forces && result.converged) return result;
+  if (by_forces || result.arrived)
+    solution.z.noalias() = -(problem.model->factor.transpose() * (result.arrived ? force_ : kept_));
+  else
+    solution.z = kept_;
   return result;
 }
 

@@ -18,7 +18,7 @@ namespace uplift {
 ///
 /// s, too, has only entries where a law bends on its way; those that cannot matter are taken as zero, so that a product with F0 costs as
 /// many columns as there are others. The openings follow from dg, whose round-off is that of F0; where the iteration has arrived they are
-/// made anew from the coordinates, z = -C^T P, and the residual |C^T s| is that of Newton's method in z. It is no method of its own: where
+/// made anew from the forces, and the residual |C^T s| is that of Newton's method in z. It is no method of its own: where
 /// it does not arrive soon, the general method starts anew.
 class RowNewton final : public MethodWork {
  public:
@@ -33,7 +33,7 @@ class RowNewton final : public MethodWork {
     double residual = 0;
   };
   /// Solves from the guess in solution.z, or from the last step. Leaves z, forces and slopes at the solution; the guess in its place where
-  /// it does not arrive.
+  /// it does not arrive. Where forces suffice (ContactModel) they are the guess as well, and a solution has no z.
   Result solve(const InterfaceProblem&, double tolerance, NewtonWork&, InterfaceSolution&);
   /// Order of the matrix that was factorised last.
   Index order() const { return static_cast<Index>(rows_.size()); }
@@ -47,6 +47,7 @@ class RowNewton final : public MethodWork {
   void guess(NewtonWork&, InterfaceSolution&);
   double change_of_slopes(const Vector& slopes) const;
   void rows_apart(const Vector& slopes, const Vector& from, std::vector<Index>& rows);
+  bool own_changes(const std::vector<Index>& rows);
   void fill(const Matrix& compliance, const std::vector<Index>& rows);
   bool look_for_reference(const Vector& slopes, double paid);
   void refer_to(const Vector& slopes);
@@ -57,13 +58,14 @@ class RowNewton final : public MethodWork {
   void look(double alpha, NewtonWork&, InterfaceSolution&);
   void measure();
   void shorten(double before, NewtonWork&, InterfaceSolution&);
-  void look_at_coordinates(NewtonWork&, InterfaceSolution&);
+  void look_at_forces(NewtonWork&, InterfaceSolution&);
+  void opening_of(const Vector& force, Vector& opening);
   bool iterate(double tolerance, NewtonWork&, InterfaceSolution&, Result&);
   bool is_solution(double tolerance, NewtonWork&, InterfaceSolution&, Result&);
 
   const InterfaceProblem* problem_ = nullptr;
   SeenModel seen_;
-  Matrix compliance_;  // F
+  Matrix compliance_;  // F; its columns and those of F0 fill whole registers
   std::vector<Place> places_;
   LuInPlace lu_;
   std::vector<Index> rows_, other_rows_;  // of the factor, ascending
@@ -73,9 +75,10 @@ class RowNewton final : public MethodWork {
   Matrix reference_compliance_;          // F0
   Vector none_, reference_, candidate_;  // slopes: 0, k0, those of the next reference
   bool has_reference_ = false, from_reference_ = false;
-  double spared_ = 0;  // by the candidate, had it been the reference; cubes of rows
-  int candidate_age_ = 0;
-  Vector force_, opening_, rest_, moved_;          // P, g, s, F0 s
+  double spared_ = 0, candidate_price_ = 0;  // by the candidate, had it been the reference; of making it that
+  int candidate_age_ = 0, updates_ = 0;      // of the reference, one from the other
+  Matrix chosen_, images_;                   // work space of refer_to: columns and rows of F0
+  Vector force_, opening_, rest_, moved_;          // P, g, s, F0 s and then -dg
   Vector share_;                                   // sqrt(F_ii)
   Vector product_, apart_;                         // work space: k dg; of rows_apart
   Vector origin_force_, origin_opening_, kept_;    // where a line search begins; the guess

@@ -1,0 +1,67 @@
+#include "uplift/run/pictures.h"
+
+#include <utility>
+
+#include "uplift/model/reduced.h"
+
+namespace uplift {
+
+Pictures::Pictures(const Model& model, const RunPlan& plan, std::vector<Frame>& frames)
+    : model_(model), plan_(plan), frames_(frames), waits_(is_reduced(model)) {
+  if (waits_) coordinates_.setZero(together, model.free());
+}
+
+void Pictures::add(Frame frame, const State& state) {
+  frames_.push_back(std::move(frame));
+  if (!waits_) {
+    frames_.back().displacement = displacement(state.instant(), state.displacement);
+    return;
+  }
+  coordinates_.row(std::ssize(instant_)) = state.displacement.transpose();
+  instant_.push_back(state.instant());
+  if (std::ssize(instant_) == together) finish();
+}
+
+void Pictures::finish() {
+  if (instant_.empty()) return;
+  std::vector<Vector*> missing;
+  for (auto frame = frames_.end() - std::ssize(instant_); frame != frames_.end(); ++frame) missing.push_back(&frame->displacement);
+  make(coordinates_, instant_, missing);
+  instant_.clear();
+}
+
+Vector Pictures::displacement(MotionInstant at, const Vector& coordinates) const {
+  Vector made;
+  if (waits_) {
+    Matrix alone = Matrix::Zero(together, coordinates.size());
+    alone.row(0) = coordinates.transpose();
+    make(alone, {at}, {&made});
+    return made;
+  }
+  if (plan_.pictured.empty()) return model_.full(coordinates, 0, at);
+  const int each = model_.space.unknowns();
+  made.resize(each * std::ssize(plan_.pictured));
+  for (Index i = 0; i < made.size(); ++i)
+    made[i] = model_.full(each * plan_.pictured[static_cast<std::size_t>(i / each)] + static_cast<int>(i % each), coordinates, 0, at);
+  return made;
+}
+
+void Pictures::make(const Matrix& coordinates, const std::vector<MotionInstant>& at, const std::vector<Vector*>& displacements) const {
+  const int each = model_.space.unknowns();
+  const Index count = plan_.pictured.empty() ? model_.full_unknowns() : each * std::ssize(plan_.pictured);
+  for (Vector* displacement : displacements) displacement->resize(count);
+  for (Index i = 0; i < count; ++i) {
+    const int unknown = plan_.pictured.empty() ? static_cast<int>(i)
+                                               : each * plan_.pictured[static_cast<std::size_t>(i / each)] + static_cast<int>(i % each);
+    Eigen::Array<double, together, 1> sum = Eigen::Array<double, together, 1>::Zero();
+    for (Sparse::InnerIterator entry(model_.expansion, unknown); entry; ++entry) sum += entry.value() * coordinates.col(entry.row()).array();
+    for (std::size_t k = 0; k < displacements.size(); ++k) {
+      double value = sum[static_cast<Index>(k)];
+      for (const PrescribedMotion& motion : model_.motions)
+        if (motion.shape[unknown] != 0) value += at[k].share * motion.shape[unknown] * motion.function->value(at[k].time);
+      (*displacements[k])[i] = value;
+    }
+  }
+}
+
+}  // namespace uplift
