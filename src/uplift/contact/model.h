@@ -67,9 +67,9 @@ struct ContactModel {
   bool average = false;  // path-averaged traction: p = scale * area * mean(from -> opening)
   InterfaceSolver solver = InterfaceSolver::automatic;
   bool forces_suffice = false;  // whoever takes the step reads the forces of a solution, not its z
-  double scale = 1;  // weight of the interface force in the scheme's balance: with the path average 2/(1 + 2 b), else 1
-  double step = 0;   // s; 0 in statics
-  double size = 1;   // m: of the interfaces, base_size(); what is no gap is a share of it
+  double scale = 1;             // weight of the interface force in the scheme's balance: with the path average 2/(1 + 2 b), else 1
+  double step = 0;              // s; 0 in statics
+  double size = 1;              // m: of the interfaces, base_size(); what is no gap is a share of it
   ModelVersion version;
   int rows() const { return static_cast<int>(factor.rows()); }
 };

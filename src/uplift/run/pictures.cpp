@@ -54,7 +54,8 @@ void Pictures::make(const Matrix& coordinates, const std::vector<MotionInstant>&
     const int unknown = plan_.pictured.empty() ? static_cast<int>(i)
                                                : each * plan_.pictured[static_cast<std::size_t>(i / each)] + static_cast<int>(i % each);
     Eigen::Array<double, together, 1> sum = Eigen::Array<double, together, 1>::Zero();
-    for (Sparse::InnerIterator entry(model_.expansion, unknown); entry; ++entry) sum += entry.value() * coordinates.col(entry.row()).array();
+    for (Sparse::InnerIterator entry(model_.expansion, unknown); entry; ++entry)
+      sum += entry.value() * coordinates.col(entry.row()).array();
     for (std::size_t k = 0; k < displacements.size(); ++k) {
       double value = sum[static_cast<Index>(k)];
       for (const PrescribedMotion& motion : model_.motions)

@@ -87,8 +87,8 @@ class Recorder {
   double before_ = 0;                                     // s: accelerations are the mean from here to the present time
   bool wants_acceleration_ = false;
   Vector acceleration_;
-  Frame peak_frame_;        // at the largest uplift of this stage, when it is larger than in the frames of the earlier stages
-  double peak_uplift_ = 0;  // largest share over all interfaces and steps
+  Frame peak_frame_;         // at the largest uplift of this stage, when it is larger than in the frames of the earlier stages
+  double peak_uplift_ = 0;   // largest share over all interfaces and steps
   Vector peak_coordinates_;  // of its displacements, which are made when they are asked for; empty: they are made
   double peak_load_factor_ = 0;
 };

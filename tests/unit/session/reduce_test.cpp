@@ -247,6 +247,7 @@ std::string rocking_block(const std::string& bottom, const std::string& tangenti
   replace("stages = \"static\"\n", bottom);
   replace("height = 8\nsize = 2", "height = 8\nsize = 0.5");
   replace("tangential = \"bonded\"", tangential);
+  replace("duration = 2\n", "duration = 1.5\n");
   return text +
          "[[ground_acceleration]]\ndirection = [1, 0]\nfunction = \"pulse\"\namplitude = 4\n[output]\nenergies = true\nframes = 37\n";
 }
@@ -254,9 +255,10 @@ std::string rocking_block(const std::string& bottom, const std::string& tangenti
 // Rows that are independent of each other, and more coordinates than a full matrix of the unknowns that they touch may have. Pictures,
 // sixteen at a time, are those of the whole model, too.
 TEST(ReducedRun, OnManyIndependentRowsAFullBasisIsTheRunOfTheWholeModel) {
-  for (const bool absorbing : {false, true})
+  for (const bool absorbing : {false, true}) {
+    const std::string bottom = absorbing ? "stages = \"static\"\n[[absorbing]]\ngroup = \"soil_bottom\"\n" : "";
+    std::optional<ReducedModel> basis;
     for (const char* tangential : {"K_t = 1e9, tangential = \"bonded\"", "K_t = 1e9, tangential = \"coulomb\", friction = 0.6"}) {
-      const std::string bottom = absorbing ? "stages = \"static\"\n[[absorbing]]\ngroup = \"soil_bottom\"\n" : "";
       const LoadedCase read = loaded(rocking_block(bottom, tangential));
       const BuiltCase built = built_of(read);
       ASSERT_GT(built.model.free(), 64);
@@ -264,18 +266,20 @@ TEST(ReducedRun, OnManyIndependentRowsAFullBasisIsTheRunOfTheWholeModel) {
       const RunResult full = run(built.model, built.plan, built.behaviours);
       ASSERT_EQ(full.status, RunStatus::completed) << full.reason;
       EXPECT_GT(full.max_uplifted_ratio.value, 0.2) << tangential;
-      const RunResult reduced = run_reduced(read, random_basis(built.model, built.model.free(), 1));
+      if (!basis) basis = random_basis(built.model, built.model.free(), 1);
+      const RunResult reduced = run_reduced(read, *basis);
       ASSERT_EQ(reduced.status, RunStatus::completed) << reduced.reason;
-      expect_same(reduced, full, 1e-9);
+      expect_same(reduced, full, 1e-10);
       ASSERT_GE(full.frames.size(), 37U);
       ASSERT_EQ(reduced.frames.size(), full.frames.size());
       double most = 0;
       for (const Frame& frame : full.frames) most = std::max(most, frame.displacement.cwiseAbs().maxCoeff());
       for (std::size_t k = 0; k < full.frames.size(); ++k) {
         ASSERT_EQ(reduced.frames[k].displacement.size(), full.frames[k].displacement.size()) << k;
-        EXPECT_LE((reduced.frames[k].displacement - full.frames[k].displacement).cwiseAbs().maxCoeff(), 1e-9 * most) << tangential << k;
+        EXPECT_LE((reduced.frames[k].displacement - full.frames[k].displacement).cwiseAbs().maxCoeff(), 1e-10 * most) << tangential << k;
       }
     }
+  }
 }
 
 // A basis belongs to the structure, not to the motion with which it was made.

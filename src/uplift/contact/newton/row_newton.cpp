@@ -16,23 +16,15 @@ constexpr int most_iterations = 30, patience = 12;
 constexpr double worth_a_factor = 4;  // iterations of a chord
 constexpr double of_change = 8;       // a chord leaves about so many times the change of the slopes
 constexpr double most_contraction = 0.5;
+constexpr double price_of_reference = 10;    // factors of all rows: what points that slide gain does not last
 constexpr int patience_with_candidate = 20;  // factors
 constexpr int most_updates = 50;             // of a reference, before round-off is left behind
 constexpr double negligible = 0.1;           // of what an iteration may leave: all that it takes as zero
 constexpr double same_slope = 1e-10;         // of a slope: a smaller difference is round-off
 
-// Prices in cubes of rows of a factor, the time that its elimination takes (docs/performance.md).
-
-/// Of a factor, and of what an iteration does with it.
-double price_of_factor(std::size_t rows) {
+double cubed(std::size_t rows) {
   const double n = static_cast<double>(rows);
-  return n * (n * (n + 50) + 600);
-}
-
-/// Of a new reference with other slopes in so many of all rows.
-double price_of_reference(std::size_t rows, Index all) {
-  const double n = static_cast<double>(rows), m = static_cast<double>(all);
-  return m * m * (1.2 * n + 30) + n * n * n;
+  return n * n * n;
 }
 
 }  // namespace
@@ -173,20 +165,19 @@ void RowNewton::refer_to(const Vector& slopes) {
   reference_compliance_.noalias() -= chosen_ * images_;
 }
 
-/// Takes the candidate for the reference, and says so, when it would have spared its price since it is the candidate. `paid`: for a factor
-/// without it.
+/// Takes the candidate for the reference, and says so, when it would have spared its price since it is the candidate. `paid`: cube of the
+/// rows of a factor without it.
 bool RowNewton::look_for_reference(const Vector& slopes, double paid) {
   bool made = false;
   if (candidate_age_ > 0) {
     rows_apart(slopes, candidate_, other_rows_);
-    spared_ += paid - price_of_factor(other_rows_.size());
-    made = spared_ > candidate_price_;
+    spared_ += paid - cubed(other_rows_.size());
+    const double all = static_cast<double>(compliance_.cols());
+    made = spared_ > price_of_reference * all * all * all;
     if (made) refer_to(candidate_);
   }
   if (made || candidate_age_ == 0 || candidate_age_ > patience_with_candidate) {
     candidate_ = slopes;
-    rows_apart(candidate_, has_reference_ ? reference_ : none_, other_rows_);
-    candidate_price_ = price_of_reference(other_rows_.size(), compliance_.cols());
     spared_ = 0;
     candidate_age_ = 0;
   }
@@ -209,7 +200,7 @@ bool RowNewton::factorise(const Vector& slopes) {
   valid_ = false;
   if (!slopes.allFinite()) return false;
   choose_rows(slopes);
-  if (look_for_reference(slopes, price_of_factor(rows_.size()))) choose_rows(slopes);
+  if (look_for_reference(slopes, cubed(rows_.size()))) choose_rows(slopes);
   slopes_ = slopes;
   change_ = slopes - (from_reference_ ? reference_ : none_);
   fill(from_reference_ ? reference_compliance_ : compliance_, rows_);
@@ -394,7 +385,7 @@ RowNewton::Result RowNewton::solve(const InterfaceProblem& problem, double toler
     from_ = problem.from;
     end_ = opening_;
   } else {
-    has_reference_ = false;
+    updates_ = most_updates;  // should round-off of the reference be the reason
   }
   if (by_forces && result.converged) return result;
   if (by_forces || result.arrived)

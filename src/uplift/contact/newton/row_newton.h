@@ -75,9 +75,9 @@ class RowNewton final : public MethodWork {
   Matrix reference_compliance_;          // F0
   Vector none_, reference_, candidate_;  // slopes: 0, k0, those of the next reference
   bool has_reference_ = false, from_reference_ = false;
-  double spared_ = 0, candidate_price_ = 0;  // by the candidate, had it been the reference; of making it that
-  int candidate_age_ = 0, updates_ = 0;      // of the reference, one from the other
-  Matrix chosen_, images_;                   // work space of refer_to: columns and rows of F0
+  double spared_ = 0;                              // by the candidate, had it been the reference; cubes of rows
+  int candidate_age_ = 0, updates_ = 0;            // updates: of the reference, one from the other
+  Matrix chosen_, images_;                         // work space of refer_to: columns and rows of F0
   Vector force_, opening_, rest_, moved_;          // P, g, s, F0 s and then -dg
   Vector share_;                                   // sqrt(F_ii)
   Vector product_, apart_;                         // work space: k dg; of rows_apart
