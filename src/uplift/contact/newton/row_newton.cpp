@@ -302,6 +302,12 @@ void RowNewton::opening_of(const Vector& force, Vector& opening) {
   opening = problem_->free_opening - product_;
 }
 
+/// z = -C^T P
+void RowNewton::coordinates_of(const Vector& force, Vector& z) {
+  z.noalias() = problem_->model->factor.transpose() * force;
+  z *= -1;
+}
+
 /// Whether the forces that the iteration has arrived at solve the problem: |G| = |C^T s| against |z| = |C^T P|, for which the sum of
 /// sqrt(F_ii) |s_i| is a bound.
 bool RowNewton::is_solution(double tolerance, NewtonWork& work, InterfaceSolution& solution, Result& result) {
@@ -309,7 +315,7 @@ bool RowNewton::is_solution(double tolerance, NewtonWork& work, InterfaceSolutio
   const double scale = std::sqrt(std::max(0.0, force_.dot(problem_->free_opening - opening_)));
   double size = share_.dot(rest_.cwiseAbs());
   if (!(size <= tolerance * scale)) {
-    solution.z.noalias() = -(problem_->model->factor.transpose() * force_);
+    coordinates_of(force_, solution.z);
     work.gradient.noalias() = problem_->model->factor.transpose() * rest_;
     size = work.gradient.norm();
   }
@@ -389,7 +395,7 @@ RowNewton::Result RowNewton::solve(const InterfaceProblem& problem, double toler
   }
   if (by_forces && result.converged) return result;
   if (by_forces || result.arrived)
-    solution.z.noalias() = -(problem.model->factor.transpose() * (result.arrived ? force_ : kept_));
+    coordinates_of(result.arrived ? force_ : kept_, solution.z);
   else
     solution.z = kept_;
   return result;

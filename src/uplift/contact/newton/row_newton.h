@@ -60,6 +60,7 @@ class RowNewton final : public MethodWork {
   void shorten(double before, NewtonWork&, InterfaceSolution&);
   void look_at_forces(NewtonWork&, InterfaceSolution&);
   void opening_of(const Vector& force, Vector& opening);
+  void coordinates_of(const Vector& force, Vector& z);
   bool iterate(double tolerance, NewtonWork&, InterfaceSolution&, Result&);
   bool is_solution(double tolerance, NewtonWork&, InterfaceSolution&, Result&);
 
