@@ -224,12 +224,13 @@ class ResultTables(TableStore):
                 shear and moment contain, law_axial law_shear law_moment without them; point: opening slip traction
                 shear_traction mean_traction mean_shear_traction (tractions of a foundation are forces). In space: all
                 three axes; also shear_1 shear_2 moment_1 moment_2 torsion (also with law_) rotation_1 rotation_2, and
-                slip_1 slip_2 ... of a point, along and about x and y under a level base, also of a footing with an
-                azimuth. beam: axial shear moment, in space also shear_y shear_z torsion moment_y moment_z; level:
-                storey_shear, in space storey_shear_x storey_shear_y; node and below: drift_x drift_ratio_x (drift_y
-                ...); node or group: reaction_x reaction_y reaction_moment (in space reaction_mx ...) of supports and
-                prescribed motions, tie_x ... of ties and rigid bodies. Forces are those that the time scheme balances:
-                with the path-averaged traction the mean over the step that ends at the time of the row.
+                slip_1 slip_2 ... of a point, along and about x and y under a level base, also of a footing or a
+                foundation with an azimuth; but the point of a foundation slips along its width and its length. beam:
+                axial shear moment, in space also shear_y shear_z torsion moment_y moment_z; level: storey_shear, in
+                space storey_shear_x storey_shear_y; node and below: drift_x drift_ratio_x (drift_y ...); node or group:
+                reaction_x reaction_y reaction_moment (in space reaction_mx ...) of supports and prescribed motions,
+                tie_x ... of ties and rigid bodies. Forces are those that the time scheme balances: with the path-
+                averaged traction the mean over the step that ends at the time of the row.
             name: name of the column; absent: made from the rest.
             at: instead of node: the node nearest to this place [m].
             interface: interface.

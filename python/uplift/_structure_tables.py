@@ -264,6 +264,7 @@ class StructureTables(TableStore):
         model: Union[Part, str],
         shape: Optional[str] = None,
         length: Optional[Quantity] = None,
+        azimuth: Optional[Quantity] = None,
         offset: Optional[Sequence[Quantity]] = None,
         soil: Optional[Mapping[str, Any]] = None,
     ) -> None:
@@ -272,12 +273,13 @@ class StructureTables(TableStore):
         Parameters:
             name: name.
             body: node (the master of the footing) that the ground carries.
-            width: width of the underside along the x axis; of a disc its diameter [m], > 0 m.
+            width: width of the underside, along the x axis but for azimuth; of a disc its diameter [m], > 0 m.
             model: what the ground does.
             shape: plan of the underside; one of "strip", "rectangle", "disc"; default rectangle.
             length: across the width: in the plane out of the plane, absent 1 m; in space needed but for a disc [m], > 0
                 m.
+            azimuth: in space: angle from the x axis to the width, about the normal [rad]; default 0.0.
             offset: from the node to the middle of the footing's underside [m].
             soil: gives the stiffnesses that the model leaves out.
         """
-        self._add("foundation", {"name": name, "body": body, "width": width, "model": model, "shape": shape, "length": length, "offset": offset, "soil": soil})
+        self._add("foundation", {"name": name, "body": body, "width": width, "model": model, "shape": shape, "length": length, "azimuth": azimuth, "offset": offset, "soil": soil})

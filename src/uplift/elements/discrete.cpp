@@ -33,15 +33,14 @@ void form_none(Matrix* wanted, Index size) {
   if (wanted) wanted->setZero(size, size);
 }
 
-/// On the unknowns of a node, of a point that is rigidly offset from it: values along the axes on its translations, about them on its
-/// rotations.
-Matrix at_point(Space space, const Vec3& along, const Vec3& about, const Vec3& offset) {
+/// On the unknowns of a node, of a point that is rigidly offset from it: tensors that act on its translation and on its rotation.
+Matrix at_point(Space space, const Mat3& along, const Mat3& about, const Vec3& offset) {
   const int n = space.unknowns();
   Matrix matrix(n, n);
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
-      matrix(i, j) = space.motion(i, offset).dot(along.cwiseProduct(space.motion(j, offset)));
-      if (i == j && space.is_rotation(i)) matrix(i, j) += about.dot(space.axis(i));
+      matrix(i, j) = space.motion(i, offset).dot(along * space.motion(j, offset));
+      if (space.is_rotation(i) && space.is_rotation(j)) matrix(i, j) += space.axis(i).dot(about * space.axis(j));
     }
   return matrix;
 }
@@ -56,10 +55,10 @@ PointMass::PointMass(Space space, int node, double mass, const Vec3& inertia, co
 void PointMass::form(Local local) const {
   form_none(local.stiffness, space_.unknowns());
   form_none(local.damping, space_.unknowns());
-  if (local.mass) *local.mass = at_point(space_, Vec3::Constant(mass_), inertia_, offset_);
+  if (local.mass) *local.mass = at_point(space_, mass_ * Mat3::Identity(), Mat3(inertia_.asDiagonal()), offset_);
 }
 
-PointDashpot::PointDashpot(Space space, int node, const Vec3& along, const Vec3& about, const Vec3& offset)
+PointDashpot::PointDashpot(Space space, int node, const Mat3& along, const Mat3& about, const Vec3& offset)
     : space_(space), node_(node), along_(along), about_(about), offset_(offset) {}
 
 void PointDashpot::form(Local local) const {

@@ -26,11 +26,11 @@ class PointMass : public Element {
   Vec3 inertia_, offset_;
 };
 
-/// Dashpots from one point to fixed ground, along the global axes [N s/m] and about them [N m s/rad]; the point is rigidly offset from the
-/// node [m]. In the plane the first two and the last one count.
+/// Dashpots from one point to fixed ground, as tensors in the global axes for its velocity [N s/m] and its angular velocity [N m s/rad];
+/// the point is rigidly offset from the node [m]. In the plane rotations about z alone count.
 class PointDashpot : public Element {
  public:
-  PointDashpot(Space space, int node, const Vec3& along, const Vec3& about, const Vec3& offset);
+  PointDashpot(Space space, int node, const Mat3& along, const Mat3& about, const Vec3& offset);
   std::span<const int> nodes() const override { return {&node_, 1}; }
   int unknowns_per_node() const override { return space_.unknowns(); }
   void form(Local local) const override;
@@ -38,7 +38,8 @@ class PointDashpot : public Element {
  private:
   Space space_;
   int node_;
-  Vec3 along_, about_, offset_;
+  Mat3 along_, about_;
+  Vec3 offset_;
 };
 
 /// What a spring or dashpot connects: one node to fixed ground, or two nodes; their translations or rotations along a fixed direction.

@@ -12,6 +12,25 @@ Vec3 local_axis(Space space, const Vec3& normal, int axis) {
   return axis == 0 ? first : cross(normal, first);
 }
 
+Vec3 turned_axis(const Vec3& normal, double azimuth, int axis) {
+  constexpr Space space{3};
+  if (axis == 2) return normal;
+  const double c = std::cos(azimuth), s = std::sin(azimuth);
+  const Vec3 first = local_axis(space, normal, 0), second = local_axis(space, normal, 1);
+  return axis == 0 ? Vec3(c * first + s * second) : Vec3(c * second - s * first);
+}
+
+ComponentAxis component_axis(const Interface& interface, int point, int component) {
+  const Space space = interface.space;
+  const Vec3& normal = interface.normal[static_cast<std::size_t>(point)];
+  const int translations = interface.batch.translations();
+  const bool rotation = component >= translations;
+  if (space.dimension == 2 && rotation) return {Vec3::UnitZ(), true};
+  const int axis = rotation ? component - translations : component + space.dimension - translations;
+  const double azimuth = interface.footprint ? interface.footprint->azimuth : 0;
+  return {azimuth == 0 ? local_axis(space, normal, axis) : turned_axis(normal, azimuth, axis), rotation};
+}
+
 Vec3 mean_normal(const Interface& interface) {
   Vec3 sum = Vec3::Zero();
   for (int i = 0; i < interface.batch.points; ++i) sum += interface.area[i] * interface.normal[static_cast<std::size_t>(i)];
@@ -27,7 +46,7 @@ Matrix resultant_rows(const Interface& interface) {
   for (int i = 0; i < points; ++i) {
     const Vec3 arm = interface.position[static_cast<std::size_t>(i)] - interface.reference;
     for (int c = 0; c < components; ++c) {
-      const auto [axis, rotation] = component_axis(space, interface.normal[static_cast<std::size_t>(i)], interface.batch, c);
+      const auto [axis, rotation] = component_axis(interface, i, c);
       const Vec3 force = rotation ? Vec3(Vec3::Zero()) : axis, moment = rotation ? axis : cross(arm, axis);
       auto column = rows.col(c * points + i);
       for (int k = 0; k < d; ++k) column[k] = force.dot(local_axis(space, mean, k));

@@ -33,17 +33,15 @@ struct Interface {
 /// Plane: t is n turned by -90 degrees; n = (0, 1) gives t = (1, 0). Space: t1 is the x axis projected on the face (the y axis where n is
 /// within 26 degrees of x), t2 = n x t1; n = (0, 0, 1) gives t1 = x, t2 = y.
 Vec3 local_axis(Space space, const Vec3& normal, int axis);
+/// In space: the same axes turned about the normal by `azimuth` [rad].
+Vec3 turned_axis(const Vec3& normal, double azimuth, int axis);
 /// Along what a component of a point moves, or about what it turns.
 struct ComponentAxis {
   Vec3 axis;
   bool rotation = false;
 };
-inline ComponentAxis component_axis(Space space, const Vec3& normal, const Batch& batch, int component) {
-  const int translations = batch.translations();
-  if (component < translations) return {local_axis(space, normal, component + space.dimension - translations)};
-  if (space.dimension == 2) return {Vec3::UnitZ(), true};
-  return {local_axis(space, normal, component - translations), true};
-}
+/// The local axes of the point's normal; under a whole foundation turned by its azimuth.
+ComponentAxis component_axis(const Interface&, int point, int component);
 /// Direction of the area-weighted mean of the normals; the vertical axis where this mean is shorter than 1/2, as of the walls of a pit.
 Vec3 mean_normal(const Interface&);
 

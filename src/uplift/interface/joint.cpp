@@ -62,9 +62,7 @@ Vector relative_stiffness(const Quadrature& points, double ratio) {
 
 /// Direction of the width.
 Vec3 direction_along(const Footing& footing, const Vec3& n) {
-  const bool rectangle = footing.length > 0;
-  const Vec3 t = local_axis(Space{rectangle ? 3 : 2}, n, 0);
-  return rectangle ? Vec3(std::cos(footing.azimuth) * t + std::sin(footing.azimuth) * cross(n, t)) : t;
+  return footing.length > 0 ? turned_axis(n, footing.azimuth, 0) : local_axis(Space{2}, n, 0);
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ struct Footprint {
   double length = 0;                  // m: along t2; of a strip out of the plane
   int dimension = 2;                  // of the model
   std::optional<FootingOnSoil> soil;  // [foundation.soil]: gives the stiffnesses that the model leaves out
+  double azimuth = 0;                 // rad: in space, from the x axis to t1, about the normal
   double area() const;                // m2
   int components() const { return dimension == 2 ? 3 : 6; }
   int rotations() const { return dimension == 2 ? 1 : 3; }

@@ -61,6 +61,7 @@ void ModelBuilder::place_interfaces(Model& model) {
     face.batch.components = spec.components;
     face.batch.rotations = spec.rotations;
     face.reference = spec.reference;
+    face.footprint = spec.footprint;
     face.area.resize(points), face.weight.resize(points);
     face.gap = Vector::Zero(face.rows());
     for (int i = 0; i < points; ++i) {
@@ -72,7 +73,7 @@ void ModelBuilder::place_interfaces(Model& model) {
       face.gap[face.batch.normal() + i] = point.gap;
       for (const bool upper : {true, false}) {
         for (int c = 0; c < spec.components; ++c)
-          add_side(space_, nodes_, point, upper, component_axis(space_, face.normal[i], face.batch, c), first + c * points + i, entries);
+          add_side(space_, nodes_, point, upper, component_axis(face, i, c), first + c * points + i, entries);
         if (!(upper ? point.rigid_upper : point.rigid_lower)) continue;
         for (const auto& [node, shape] : upper ? point.upper : point.lower)
           model.assembly.arms.push_back({node, static_cast<int>(k), i, shape, upper ? -1.0 : 1.0, point.position - nodes_[node].position});
@@ -81,7 +82,6 @@ void ModelBuilder::place_interfaces(Model& model) {
     face.law = std::move(spec.law);
     face.cone = std::move(spec.cone);
     face.behaviour = spec.behaviour;
-    face.footprint = spec.footprint;
     first += face.rows();
     model.interfaces.push_back(std::move(face));
   }

@@ -73,7 +73,7 @@ Vec3 arm_force(const Model& model, const State& state, const Assembly::Arm& arm)
   const Interface& face = model.interfaces[arm.interface];
   Vec3 p = Vec3::Zero();
   for (int c = 0; c < face.batch.translations(); ++c)
-    p += state.force[first + c * face.batch.points + arm.point] * component_axis(face.space, face.normal[arm.point], face.batch, c).axis;
+    p += state.force[first + c * face.batch.points + arm.point] * component_axis(face, arm.point, c).axis;
   return arm.sign * arm.weight * p;
 }
 

@@ -245,7 +245,12 @@ void InterfaceViewer::look_at_footing(const Layout& layout, const Vector& openin
   view.bearing_utilisation = contact.bearing_utilisation;
   view.sliding_utilisation = contact.sliding_utilisation;
   view.bearing_capacity = contact.bearing_capacity;
-  for (int k = 0; k < std::min(2, layout.batch.rotations); ++k) view.rotation[static_cast<std::size_t>(k)] = rows[layout.translations + k];
+  for (int k = 0; k < std::min(2, layout.batch.rotations); ++k) {  // about the axes of the resultant
+    double rotation = 0;
+    for (int row = layout.translations; row < layout.batch.components; ++row)
+      rotation += layout.resultant_rows(layout.translations + k, row) * rows[row];
+    view.rotation[static_cast<std::size_t>(k)] = rotation;
+  }
   view.resultant = view.in_law = resultant_by_rows(layout, force);
   if (radiation != nullptr) view.resultant = resultant_by_rows(layout, force, radiation);
 }

@@ -31,7 +31,9 @@ std::string number(double value) {
   return fmt::format("{:.17g}", value);
 }
 
-std::string structure(const Frame& frame, bool space, const std::string& ground, double amplitude = 4.3) {
+enum class Loading { pulse, force_at_rest };
+
+std::string structure(const Frame& frame, bool space, const std::string& ground, Loading loading = Loading::pulse) {
   const double l = frame.length, f = frame.force, m = frame.mass();
   const auto vector = [&](double along, double across, double up) {
     return space ? fmt::format("[{:.17g}, {:.17g}, {:.17g}]", frame.x(along, across), frame.y(along, across), up)
@@ -46,12 +48,14 @@ std::string structure(const Frame& frame, bool space, const std::string& ground,
   text += fmt::format("[[rigid]]\nname = \"footing\"\nnode = \"base\"\nmass = {:.17g}\n", 30e3 * m);
   text += space ? fmt::format("inertias = [{0:.17g}, {0:.17g}, {1:.17g}]\n", 60e3 * m * l * l, 100e3 * m * l * l)
                 : fmt::format("inertia = {:.17g}\n", 60e3 * m * l * l);
-  text += ground + "[gravity]\nacceleration = " + (space ? "[0, 0, " : "[0, ") + number(-9.81 * l) + "]\n[damping]\nalpha = 0.3\n" +
-          "[[function]]\nname = \"pulse\"\nshape = { type = \"half_sine\", duration = 0.4 }\n" +
-          "[[ground_acceleration]]\ndirection = " + vector(space ? 0.8 : 1, 0.6, 0) +
-          fmt::format("\nfunction = \"pulse\"\namplitude = {:.17g}\n", amplitude * l) +
-          "[[stage]]\ntype = \"static\"\n[[stage]]\ntype = \"dynamic\"\nduration = 1.2\nstep = 4e-3\n"
-          "[output]\nframes = 0\nautomatic = false\n";
+  text += ground + "[gravity]\nacceleration = " + (space ? "[0, 0, " : "[0, ") + number(-9.81 * l) + "]\n[damping]\nalpha = 0.3\n";
+  if (loading == Loading::pulse)
+    text += "[[function]]\nname = \"pulse\"\nshape = { type = \"half_sine\", duration = 0.4 }\n[[ground_acceleration]]\ndirection = " +
+            vector(space ? 0.8 : 1, 0.6, 0) + fmt::format("\nfunction = \"pulse\"\namplitude = {:.17g}\n", 4.3 * l) +
+            "[[stage]]\ntype = \"static\"\n[[stage]]\ntype = \"dynamic\"\nduration = 1.2\nstep = 4e-3\n";
+  else
+    text += "[[load]]\nnode = \"top\"\nforce = " + vector(150e3 * f, 112.5e3 * f, 0) + "\n[[stage]]\ntype = \"static\"\n";
+  text += "[output]\nframes = 0\nautomatic = false\n";
   for (const char* node : {"top", "base"})
     for (const char* quantity : {"ux", "uy", "uz", "rx", "ry", "rz"})
       if (space || std::string(quantity) == "ux" || std::string(quantity) == "uy" || std::string(quantity) == "rz")
@@ -60,7 +64,7 @@ std::string structure(const Frame& frame, bool space, const std::string& ground,
 }
 
 /// A footing of width along x and length along y that yields and slides.
-std::string footing(const Frame& frame, const std::string& shape, double width, double length, bool space, const std::string& more = "") {
+std::string footing(const Frame& frame, const std::string& shape, double width, double length, bool space) {
   const double l = frame.length, f = frame.force;
   std::string text = fmt::format("[[foundation]]\nname = \"soil\"\nbody = \"base\"\nshape = \"{}\"\nwidth = {:.17g}\n", shape, width * l);
   if (space && shape == "rectangle") text += fmt::format("length = {:.17g}\n", length * l);
@@ -71,7 +75,30 @@ std::string footing(const Frame& frame, const std::string& shape, double width, 
       6e8 * f / l, 3e8 * f / l, rocking(width), 5e6 * f, 8e6 * f, 0.02 * l, 2e3 * f / (l * l));
   if (space) text += fmt::format(", K_t = {:.17g}", 1e9 * f * l);
   if (space && shape == "rectangle") text += fmt::format(", K_r2 = {:.17g}", rocking(length));
-  return text + more + " }\n";
+  return text + " }\n";
+}
+
+/// The same one in space with its width along x of the frame; its horizontal stiffnesses differ.
+std::string turned_footing(const Frame& frame) {
+  const std::string width = fmt::format("width = {:.17g}\n", 6 * frame.length);
+  const double azimuth = std::atan2(frame.y(1, 0), frame.x(1, 0));
+  const std::string text =
+      support::replaced(footing(frame, "rectangle", 6, 5, true), width, width + fmt::format("azimuth = {:.17g}\n", azimuth));
+  return support::replaced(text, ", K_t", fmt::format(", K_h2 = {:.17g}, K_t", 2e8 * frame.force / frame.length));
+}
+
+/// Dashpots for the waves that the footing radiates.
+std::string radiation(const Frame& frame) {
+  const double l = frame.length;
+  return fmt::format("[foundation.soil]\nradiation = true\nfrequency = 2\nlayers = [{{ G = {:.17g}, poisson = 0.3, density = {:.17g} }}]\n",
+                     60e6 * frame.force / (l * l), 1900 * frame.mass() / std::pow(l, 3));
+}
+
+/// Horizontal vectors of the ground: shear, moment or rotation.
+std::vector<Vec3> of_ground(const Ran& ran, const std::string& quantity) {
+  std::vector<Vec3> made;
+  for (std::size_t i = 0; i < ran.rows(); ++i) made.push_back({ran["soil." + quantity + "_1"][i], ran["soil." + quantity + "_2"][i], 0});
+  return made;
 }
 
 /// Translation and rotation of a node in the frame of the case, in metres, and the largest of each.
@@ -154,6 +181,37 @@ TEST(FoundationSymmetry, InSpace) {
     for (const auto& [what, frame] : frames) expect_same(original, ran(frame), frame, true, shape + " " + what);
     const Frame quarter{1, 1, std::numbers::pi / 2};
     if (shape == "rectangle") expect_same(original, ran(quarter, true), quarter, true, "rectangle turned by 90 degrees");
+  }
+}
+
+// A rectangle of unequal sides whose azimuth is that of the frame. Shear, moments and rotations are along and about the axes of the model.
+TEST(FoundationSymmetry, RectangleTurnedByItsAzimuth) {
+  for (const std::string what : {"at rest", "pulse", "second order", "radiation"}) {
+    const auto ran = [&](const Frame& frame) {
+      const std::string ground = turned_footing(frame) + (what == "radiation" ? radiation(frame) : "");
+      std::string text = structure(frame, true, ground, what == "at rest" ? Loading::force_at_rest : Loading::pulse);
+      if (what == "second order") text = support::replaced(text, "step = 4e-3\n", "step = 4e-3\np_delta = true\n");
+      for (const char* quantity : {"shear_1", "shear_2", "moment_1", "moment_2", "rotation_1", "rotation_2"})
+        text += fmt::format("[[output.history]]\ninterface = \"soil\"\nquantity = \"{}\"\n", quantity);
+      return support::run_text(text);
+    };
+    const Ran original = ran({});
+    EXPECT_EQ(original.result.status, RunStatus::completed) << what << ": " << original.result.reason;
+    EXPECT_GT(original.result.max_uplifted_ratio.value, 0.1) << what;
+    EXPECT_GT(original.result.final_energy.interface_dissipated, 0.01 * original.result.energy_scale) << what;
+    for (const auto& [how, frame] :
+         std::vector<std::pair<std::string, Frame>>{{"turned by 37 degrees", {1, 1, turn}},
+                                                    {"turned by 37 degrees and mirrored, mm, kN", {1e3, 1e-3, turn, -1}},
+                                                    {"turned by -111 degrees", {1, 1, -3 * turn}}}) {
+      const Ran other = ran(frame);
+      expect_same(original, other, frame, true, what + ", " + how);
+      for (const std::string quantity : {"shear", "moment", "rotation"}) {
+        const double unit = quantity == "shear" ? frame.force : quantity == "moment" ? frame.side * frame.force * frame.length : frame.side;
+        std::vector<Vec3> expected = of_ground(original, quantity);
+        for (Vec3& v : expected) v = unit * Vec3(frame.x(v[0], v[1]), frame.y(v[0], v[1]), 0);
+        EXPECT_LT(distance(expected, of_ground(other, quantity)), 1e-9) << what << ", " << how << ", " << quantity;
+      }
+    }
   }
 }
 

@@ -8,11 +8,15 @@
 namespace uplift {
 namespace {
 
-/// Edges in the plane, corners in space; of a disc points round it.
+/// Edges in the plane, corners in space; of a disc points round it, the same for all azimuths.
 std::vector<Place> corners_of(const Footprint& footprint, Space space, const JointPoint& point) {
-  const Vec3 along = 0.5 * footprint.width * local_axis(space, point.normal, 0);
-  if (space.dimension == 2) return {point.position - along, point.position + along};
-  const Vec3 across = 0.5 * footprint.length * local_axis(space, point.normal, 1);
+  if (space.dimension == 2) {
+    const Vec3 along = 0.5 * footprint.width * local_axis(space, point.normal, 0);
+    return {point.position - along, point.position + along};
+  }
+  const double azimuth = footprint.shape == Footprint::Shape::disc ? 0 : footprint.azimuth;
+  const Vec3 along = 0.5 * footprint.width * turned_axis(point.normal, azimuth, 0);
+  const Vec3 across = 0.5 * footprint.length * turned_axis(point.normal, azimuth, 1);
   if (footprint.shape != Footprint::Shape::disc)
     return {point.position - along - across, point.position + along - across, point.position + along + across,
             point.position - along + across};
@@ -32,6 +36,9 @@ Footprint footprint_of(const CaseFoundation& foundation, Space space) {
   made.shape = foundation.shape;
   made.width = foundation.width;
   made.dimension = space.dimension;
+  made.azimuth = foundation.azimuth;
+  if (space.dimension == 2 && made.azimuth != 0)
+    fail(foundation, "azimuth", "no azimuth in the plane: the width lies along the x axis", "one");
   const bool disc = made.shape == Footprint::Shape::disc, strip = made.shape == Footprint::Shape::strip;
   if (disc && foundation.length) fail(foundation, "length", "no length: the width of a disc is its diameter", "one");
   if (strip && space.dimension == 3) fail(foundation, "shape", "rectangle or disc in space", "strip");
@@ -50,9 +57,13 @@ std::unique_ptr<const Element> radiation_dashpot(const CaseFoundation& foundatio
   const bool plane = space.dimension == 2;
   const Vec3 along(damping[0], damping[1], plane ? 0 : damping[2]);
   const Vec3 about = plane ? Vec3(0, 0, damping[2]) : Vec3(damping[3], damping[4], damping[5]);
+  Mat3 axes = Mat3::Identity();  // of the foundation, one in each column
+  if (!plane)
+    for (int k = 0; k < 3; ++k) axes.col(k) = turned_axis(space.axis(space.up()), footprint.azimuth, k);
+  const auto tensor = [&](const Vec3& values) { return Mat3(axes * values.asDiagonal() * axes.transpose()); };
   Vec3 offset = Vec3::Zero();
   if (foundation.offset) offset = foundation.offset->in(space);
-  return std::make_unique<PointDashpot>(space, names.node(foundation.body), along, about, offset);
+  return std::make_unique<PointDashpot>(space, names.node(foundation.body), tensor(along), tensor(about), offset);
 }
 
 Joint foundation_joint(const CaseFoundation& foundation, const Footprint& footprint, const CaseNames& names) {

@@ -134,10 +134,11 @@ const Section& foundation_section() {
       "a rigid footing whose ground is one element with displacements and rotations (macro-element), instead of an interface of points",
       Fields{text("name", "name"), text("body", "node (the master of the footing) that the ground carries"),
              choice("shape", {"strip", "rectangle", "disc"}, "plan of the underside").standard("rectangle"),
-             number("width", "m", "width of the underside along the x axis; of a disc its diameter").positive(),
+             number("width", "m", "width of the underside, along the x axis but for azimuth; of a disc its diameter").positive(),
              number("length", "m", "across the width: in the plane out of the plane, absent 1 m; in space needed but for a disc")
                  .positive()
                  .optional(),
+             number("azimuth", "rad", "in space: angle from the x axis to the width, about the normal").standard(0.0),
              vector("offset", "m", "from the node to the middle of the footing's underside").optional(),
              table("soil", footing_soil_section(), "gives the stiffnesses that the model leaves out").optional(),
              part("model", foundation_models, "what the ground does")}};
@@ -152,6 +153,7 @@ CaseFoundation case_foundation(const Values& table) {
           *footprint_shape(table.text("shape")),
           table.number("width"),
           number_if(table, "length"),
+          table.number("azimuth"),
           vector_used(table, "offset"),
           soil,
           soil != nullptr && soil->flag("radiation"),

@@ -65,6 +65,7 @@ struct CaseFoundation : CaseTable {
   Footprint::Shape shape;
   double width;                  // m
   std::optional<double> length;  // m
+  double azimuth;                // rad
   std::optional<VectorUsed> offset;
   const Values* soil;  // null: none
   bool radiates;

@@ -12,29 +12,30 @@ using Fields = std::vector<Field>;
 const Section& history_section() {
   static const Section s{
       "history", "a column of the output: of a node, a group, an interface or one of its points, a beam, or a storey",
-      Fields{text("name", "name of the column; absent: made from the rest").optional(), text("node", "node").optional(),
-             vector("at", "m", "instead of node: the node nearest to this place").optional(), text("interface", "interface").optional(),
-             integer("point", "point of the interface, from 1").between(1, 1000000).optional(),
-             text("beam", "beam whose section force is wanted, at position or at").optional(),
-             number("position", "m", "distance of the section from the first node of the beam").nonnegative().optional(),
-             text("group", "group of the mesh whose reactions are summed").optional(),
-             number("level", "m", "height of a horizontal cut through all beams, for the storey shear").optional(),
-             text("below", "for the drift of node: the node below, whose displacement is subtracted").optional(),
-             text("quantity",
-                  "node: ux uy rz, vx vy vrz, ax ay arz, and the absolute accelerations abs_ax abs_ay, which are others than ax ay under a "
-                  "ground acceleration; interface: axial shear moment rotation uplifted_ratio max_opening max_pressure, and "
-                  "settlement tilt of the upper side (in space tilt_1 tilt_2, about x and y); of a foundation, which has no pressure, "
-                  "bearing_utilisation (with V_s), bearing_capacity (with V_u > V_s) and sliding_utilisation (with friction_angle), "
-                  "and with radiation dashpots, whose forces axial, shear and moment contain, law_axial law_shear law_moment without them; "
-                  "point: opening slip traction shear_traction mean_traction mean_shear_traction (tractions of a foundation are forces). "
-                  "In space: all three axes; also shear_1 "
-                  "shear_2 moment_1 moment_2 torsion (also with law_) rotation_1 rotation_2, and slip_1 slip_2 ... of a point, along and "
-                  "about x and y under a level base, also of a footing with an azimuth. beam: axial "
-                  "shear moment, in "
-                  "space also shear_y shear_z torsion moment_y moment_z; level: storey_shear, in space storey_shear_x storey_shear_y; node "
-                  "and below: drift_x drift_ratio_x (drift_y ...); node or group: reaction_x reaction_y reaction_moment (in space "
-                  "reaction_mx ...) of supports and prescribed motions, tie_x ... of ties and rigid bodies. Forces are those that the time "
-                  "scheme balances: with the path-averaged traction the mean over the step that ends at the time of the row")}};
+      Fields{
+          text("name", "name of the column; absent: made from the rest").optional(), text("node", "node").optional(),
+          vector("at", "m", "instead of node: the node nearest to this place").optional(), text("interface", "interface").optional(),
+          integer("point", "point of the interface, from 1").between(1, 1000000).optional(),
+          text("beam", "beam whose section force is wanted, at position or at").optional(),
+          number("position", "m", "distance of the section from the first node of the beam").nonnegative().optional(),
+          text("group", "group of the mesh whose reactions are summed").optional(),
+          number("level", "m", "height of a horizontal cut through all beams, for the storey shear").optional(),
+          text("below", "for the drift of node: the node below, whose displacement is subtracted").optional(),
+          text("quantity",
+               "node: ux uy rz, vx vy vrz, ax ay arz, and the absolute accelerations abs_ax abs_ay, which are others than ax ay under a "
+               "ground acceleration; interface: axial shear moment rotation uplifted_ratio max_opening max_pressure, and "
+               "settlement tilt of the upper side (in space tilt_1 tilt_2, about x and y); of a foundation, which has no pressure, "
+               "bearing_utilisation (with V_s), bearing_capacity (with V_u > V_s) and sliding_utilisation (with friction_angle), "
+               "and with radiation dashpots, whose forces axial, shear and moment contain, law_axial law_shear law_moment without them; "
+               "point: opening slip traction shear_traction mean_traction mean_shear_traction (tractions of a foundation are forces). "
+               "In space: all three axes; also shear_1 "
+               "shear_2 moment_1 moment_2 torsion (also with law_) rotation_1 rotation_2, and slip_1 slip_2 ... of a point, along and "
+               "about x and y under a level base, also of a footing or a foundation with an azimuth; but the point of a foundation slips "
+               "along its width and its length. beam: axial shear moment, in "
+               "space also shear_y shear_z torsion moment_y moment_z; level: storey_shear, in space storey_shear_x storey_shear_y; node "
+               "and below: drift_x drift_ratio_x (drift_y ...); node or group: reaction_x reaction_y reaction_moment (in space "
+               "reaction_mx ...) of supports and prescribed motions, tie_x ... of ties and rigid bodies. Forces are those that the time "
+               "scheme balances: with the path-averaged traction the mean over the step that ends at the time of the row")}};
   return s;
 }
 

@@ -14,7 +14,7 @@ using Terms = std::vector<std::pair<int, double>>;
 
 /// Direction of a local component of an interface point; the normal is the last one.
 Vec3 direction(const Interface& interface, int point, int component) {
-  return component_axis(interface.space, interface.normal[static_cast<std::size_t>(point)], interface.batch, component).axis;
+  return component_axis(interface, point, component).axis;
 }
 
 /// From the Gauss points of a face to its nodes: the least-squares fit of the shape functions, weighted with the areas, so that the

@@ -259,17 +259,26 @@ void write_loops(JsonWriter& json, const ReportInput& input, const std::vector<R
     for (const Chart& chart : foundation_charts(runs, k)) write_chart(json, chart);
 }
 
+/// Of all rows; empty where a column is not recorded.
+std::vector<double> values_of(const ReportRun& run, const LoopAxis& axis) {
+  const std::vector<double>* column = find_column(*run.result, axis.column, axis.of);
+  const std::vector<double>* other = axis.other_factor != 0 ? find_column(*run.result, axis.other, axis.of) : column;
+  if (!column || !other) return {};
+  std::vector<double> values;
+  for (std::size_t i = 0; i < column->size(); ++i) values.push_back(axis.factor * (*column)[i] + axis.other_factor * (*other)[i]);
+  return values;
+}
+
 }  // namespace
 
 void add_loop(Chart& chart, const ReportRun& run, const LoopAxis& x, const LoopAxis& y) {
-  const std::vector<double>* along = find_column(*run.result, x.column, x.of);
-  const std::vector<double>* up = find_column(*run.result, y.column, y.of);
-  if (!along || !up) return;
+  const std::vector<double> along = values_of(run, x), up = values_of(run, y);
+  if (along.empty() || up.empty()) return;
   Curve curve = curve_of(run);
-  const std::size_t stride = std::max<std::size_t>(1, along->size() / (2 * points_per_curve));
-  for (std::size_t i = 0; i < along->size(); i += stride) {
-    curve.x.push_back(x.factor * (*along)[i]);
-    curve.y.push_back(y.factor * (*up)[i]);
+  const std::size_t stride = std::max<std::size_t>(1, along.size() / (2 * points_per_curve));
+  for (std::size_t i = 0; i < along.size(); i += stride) {
+    curve.x.push_back(along[i]);
+    curve.y.push_back(up[i]);
   }
   keep_finite(curve);
   if (!curve.x.empty()) chart.curves.push_back(std::move(curve));

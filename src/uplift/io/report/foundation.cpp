@@ -16,20 +16,35 @@ namespace {
 using Column = Request::Kind;
 constexpr int points_per_side = 60;  // of a limit; with fewer than 40 the page marks them
 
-/// One direction in which a foundation tilts: its columns, and which plan length is concerned.
+/// One direction in which a foundation tilts: what is shown, and which plan length is concerned.
 struct Tilt {
-  Column rotation, moment;
-  Column law_moment, law_shear;         // what the strength of the ground limits
+  LoopAxis rotation, moment;
+  LoopAxis law_moment, law_shear;       // what the strength of the ground limits
   int axis;                             // of the macro-element: 0 along t1, 1 along t2
   const char *about = "", *along = "";  // in space
 };
 
-std::vector<Tilt> tilts_of(Space space, bool radiates) {
+/// Columns of foundation k are along and about x and y, the limits belong to its own axes: t1 = c x + s y, t2 = c y - s x.
+std::vector<Tilt> tilts_of(int k, const Interface& joint, bool radiates) {
   using enum Column;
   const auto pick = [&](Column all, Column law) { return radiates ? law : all; };
-  if (space.dimension == 2) return {{rotation, moment, pick(moment, law_moment), pick(shear, law_shear), 0}};
-  return {{rotation_2, moment_2, pick(moment_2, law_moment_2), pick(shear_1, law_shear_1), 0, "y", "x"},
-          {rotation_1, moment_1, pick(moment_1, law_moment_1), pick(shear_2, law_shear_2), 1, "x", "y"}};
+  if (joint.space.dimension == 2) return {{{rotation, k}, {moment, k}, {pick(moment, law_moment), k}, {pick(shear, law_shear), k}, 0}};
+  const double azimuth = joint.footprint->azimuth, c = std::cos(azimuth), s = std::sin(azimuth);
+  const auto first = [&](Column x, Column y) { return LoopAxis{x, k, c, y, s}; };
+  const auto second = [&](Column x, Column y) { return LoopAxis{y, k, c, x, -s}; };
+  const Column m1 = pick(moment_1, law_moment_1), m2 = pick(moment_2, law_moment_2);
+  const Column h1 = pick(shear_1, law_shear_1), h2 = pick(shear_2, law_shear_2);
+  const bool turned = azimuth != 0;
+  const char *x = turned ? "the width" : "x", *y = turned ? "the length" : "y";
+  return {{second(rotation_1, rotation_2), second(moment_1, moment_2), second(m1, m2), first(h1, h2), 0, y, x},
+          {first(rotation_1, rotation_2), first(moment_1, moment_2), first(m1, m2), second(h1, h2), 1, x, y}};
+}
+
+/// The direction in which the model sways, or the one nearest to it.
+int tilt_of_sway(const BuiltCase& built, const Interface& joint) {
+  const double azimuth = joint.footprint->azimuth;
+  const bool near_x = std::abs(std::cos(azimuth)) >= std::abs(std::sin(azimuth));
+  return (built.sway == ux) == near_x ? 0 : 1;
 }
 
 /// Both signs of a limit y(N), for N from 0 to `most` [N].
@@ -107,9 +122,9 @@ std::vector<Chart> foundation_charts(const std::vector<ReportRun>& runs, std::si
   const int k = static_cast<int>(interface);
   const Axis vertical{"Vertical force, compression", "N"};
   std::vector<Chart> charts;
-  for (const Tilt& tilt : tilts_of(joint.space, radiates)) {
-    const bool main = interface == 0 && (!space || (built.sway == ux) == (tilt.axis == 0));
-    const std::string suffix = main ? "" : "_" + joint.name + (space ? std::string("_") + tilt.along : "");
+  for (const Tilt& tilt : tilts_of(k, joint, radiates)) {
+    const bool main = interface == 0 && (!space || tilt_of_sway(built, joint) == tilt.axis);
+    const std::string suffix = main ? "" : "_" + joint.name + (!space ? "" : tilt.axis == 0 ? "_x" : "_y");
     const std::string of = built.model.interfaces.size() > 1 ? ": " + joint.name : "";
     const std::string about = (space ? fmt::format(", about {}", tilt.about) : "") + of;
     const std::string along = (space ? fmt::format(", along {}", tilt.along) : "") + of;
@@ -121,7 +136,7 @@ std::vector<Chart> foundation_charts(const std::vector<ReportRun>& runs, std::si
          {"Rotation", "rad"},
          {"Moment", "N m"},
          {}},
-        runs, {tilt.rotation, k}, {tilt.moment, k}));
+        runs, tilt.rotation, tilt.moment));
     Chart moment = loop_chart({"moment_vertical" + suffix,
                                "interface",
                                "Moment against vertical force" + about,
@@ -129,7 +144,7 @@ std::vector<Chart> foundation_charts(const std::vector<ReportRun>& runs, std::si
                                vertical,
                                {"Moment", "N m"},
                                {}},
-                              runs, {axial, k, -1}, {tilt.law_moment, k});
+                              runs, {axial, k, -1}, tilt.law_moment);
     Chart shear = loop_chart({"shear_vertical" + suffix,
                               "interface",
                               "Horizontal force against vertical force" + along,
@@ -137,7 +152,7 @@ std::vector<Chart> foundation_charts(const std::vector<ReportRun>& runs, std::si
                               vertical,
                               {"Horizontal force", "N"},
                               {}},
-                             runs, {axial, k, -1}, {tilt.law_shear, k});
+                             runs, {axial, k, -1}, tilt.law_shear);
     if (ground != nullptr && !moment.curves.empty()) add_moment_limits(moment, *ground, tilt.axis, capacity);
     if (ground != nullptr && !shear.curves.empty()) add_shear_limits(shear, ground->surfaces(), capacity);
     charts.push_back(std::move(moment));

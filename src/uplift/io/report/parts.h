@@ -54,11 +54,13 @@ struct Chart {
 };
 /// Nothing without curves. `origin`: where a figure comes from whose case does not state it.
 void write_chart(JsonWriter& json, const Chart& chart, std::string_view origin = {});
-/// What an axis of a loop shows: a column times a factor.
+/// What an axis of a loop shows: a column times a factor, and where `other_factor` is not 0 another column of the same owner.
 struct LoopAxis {
   Request::Kind column;
   int of;  // full unknown or interface
   double factor = 1;
+  Request::Kind other{};
+  double other_factor = 0;
 };
 /// Adds the curve of two columns against each other where a run recorded both.
 void add_loop(Chart& chart, const ReportRun& run, const LoopAxis& x, const LoopAxis& y);
