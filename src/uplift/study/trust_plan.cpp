@@ -6,9 +6,11 @@
 #include <cmath>
 
 #include "uplift/case/build/bed.h"
+#include "uplift/case/mesh/mesh.h"
 #include "uplift/case/schema/case_input.h"
 #include "uplift/contact/method.h"
 #include "uplift/laws/tangential.h"
+#include "uplift/mesh/placed_cell.h"
 
 namespace uplift {
 namespace {
@@ -74,7 +76,7 @@ std::vector<CaseEdit> replaced(const std::string& path, const Values& law, const
 
 class Planner {
  public:
-  explicit Planner(const Case& read) : input_(*read.input), trust_(input_.trust), method_(method_values(read)) {}
+  explicit Planner(const Case& read) : input_(*read.input), mesh_(read.mesh.get()), trust_(input_.trust), method_(method_values(read)) {}
 
   TrustPlan plan() {
     halve_step();
@@ -243,6 +245,7 @@ class Planner {
     const double factor = trust_.mesh_factor;
     if (!input_.mesh || !input_.mesh->soil_box) return leave_out("mesh", input_.mesh ? "the mesh is a file" : "the case has no mesh");
     if (factor == 1) return leave_out("mesh", "mesh_factor = 1");
+    if (constrains_along_simplices()) return leave_out("mesh", no_constraints_across);
     const SoilBox& box = *input_.mesh->soil_box;
     std::vector<CaseEdit> edits;
     const std::string path = "mesh.soil_box.";
@@ -261,6 +264,7 @@ class Planner {
     const std::vector<CaseInterface>& interfaces = input_.interfaces;
     if (std::ranges::none_of(interfaces, [](const CaseInterface& each) { return each.cut() != nullptr; })) return;
     if (share == 0) return leave_out("place of the mesh", "mesh_shift = 0");
+    if (constrains_along_simplices()) return leave_out("place of the mesh", no_constraints_across);
     for (const double by : {share, -share}) {
       std::vector<CaseEdit> edits;
       for (std::size_t k = 0; k < interfaces.size(); ++k)
@@ -272,10 +276,21 @@ class Planner {
   }
 
   bool constrains() const { return make_part(method_catalog(), method_)->constrains(); }
+  /// Constraints on a plane along faces of triangles or tetrahedra: in another mesh it passes through them, where constraints are refused.
+  bool constrains_along_simplices() const {
+    if (mesh_ == nullptr || !constrains()) return false;
+    return std::ranges::any_of(mesh_->cut, [&](const std::vector<CutFace>& faces) {
+      return std::ranges::any_of(faces, [&](const CutFace& face) { return is_simplex(mesh_->mesh.type(face.upper)); });
+    });
+  }
   /// The method has a stiffness of its own in the place of constraints.
   bool regularises() const { return has_parameter(*method_.part_info(), "stiffness"); }
 
+  static constexpr const char* no_constraints_across =
+      "constraints are refused where the plane passes through triangles or tetrahedra; a traction law can tell";
+
   const CaseInput& input_;
+  const CaseMesh* mesh_;
   const CaseTrust& trust_;
   const Values method_;
   TrustPlan plan_;

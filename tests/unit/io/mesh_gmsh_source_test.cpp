@@ -54,7 +54,7 @@ TEST(GmshSource, PiecesOfAnySizeGiveTheSameMeshAndTheSameErrors) {
 }
 
 TEST(GmshSource, ANameAndANumberAcrossPieces) {
-  const std::string name(3000, 'x'), zeros(900, '0');  // the coordinate is 1 followed by 900 zeros behind the point
+  const std::string name(3000, 'x'), zeros(2000, '0');  // the coordinate is 1 followed by 2000 zeros behind the point
   const std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 1 \"" + name +
                            "\"\n$EndPhysicalNames\n"
                            "$Nodes\n3\n1 0 0 0\n2 1." +

@@ -218,6 +218,19 @@ step = 1e-2
   EXPECT_NEAR(shift(changed(tested, "mesh_back")), -0.1, 1e-15);
   EXPECT_EQ(reason(planned(text + "[trust]\nmesh_shift = 0\n"), "place of the mesh"), "mesh_shift = 0");
   EXPECT_TRUE(reason(tested, "place of the mesh").empty());
+
+  // constraints along faces of triangles: refused wherever the plane leaves them
+  std::string along = text;
+  along.replace(along.find("[mesh.soil_box.soil]"), 0, "[mesh.soil_box]\ncell = \"tri3\"\n");
+  along.replace(along.find("law = {"), along.find("cut =") - along.find("law = {"), "law = { type = \"coulomb\", friction = 0.5 }\n");
+  along.replace(along.find("-2.9"), 4, "-4.0");
+  along.replace(along.find("mesh_shift = 0.2, "), 18, "");
+  for (const char* choice : {"mesh", "place of the mesh"}) {
+    EXPECT_NE(reason(planned(along), choice).find("refused"), std::string::npos) << choice;
+    std::string quads = along;
+    quads.replace(quads.find("tri3"), 4, "quad4");
+    EXPECT_TRUE(reason(planned(quads), choice).empty()) << choice;
+  }
 }
 
 }  // namespace

@@ -10,9 +10,8 @@
 namespace uplift {
 namespace {
 
-constexpr std::size_t longest_name = 80;      // of a section; a limit keeps the search for its end fast
-constexpr std::size_t longest_line = 4096;    // of a section's name with its blanks
-constexpr std::size_t longest_number = 1024;  // as text: more digits than a double can have
+constexpr std::size_t longest_name = 80;    // of a section; a limit keeps the search for its end fast
+constexpr std::size_t longest_line = 4096;  // of a section's name with its blanks
 
 [[noreturn]] void refuse(const GmshSource& source, std::uint64_t at, const std::string& wanted, const std::string& found) {
   throw InputError({source.file(), source.line_at(at)}, "byte " + std::to_string(at), wanted, found);
@@ -84,27 +83,29 @@ void GmshCursor::skip_blanks() {
   for (look_ahead(1); at_ < window_.size() && gmsh_blank(window_[at_]); look_ahead(1)) ++at_;
 }
 
-std::int64_t GmshCursor::text_integer(const char* what, std::int64_t least, std::int64_t most) {
+template <class Number>
+std::size_t GmshCursor::length_of(Number& value) {
   skip_blanks();
-  look_ahead(longest_number);
+  const std::size_t length = length_before(gmsh_blank);
+  const char* const text = window_.data() + at_;
+  const auto [end, error] = std::from_chars(text, text + length, value);
+  return error == std::errc{} && end == text + length ? length : 0;
+}
+
+std::int64_t GmshCursor::text_integer(const char* what, std::int64_t least, std::int64_t most) {
   std::int64_t value = 0;
-  const std::string_view text = ahead();
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || (end != text.data() + text.size() && !gmsh_blank(*end)) || value < least || value > most)
+  const std::size_t length = length_of(value);
+  if (length == 0 || value < least || value > most)
     fail(least == 0 ? std::string(what) + " (an integer, not negative)" : std::string(what) + " (an integer)", next_text());
-  at_ += static_cast<std::size_t>(end - text.data());
+  at_ += length;
   return value;
 }
 
 double GmshCursor::text_real(const char* what) {
-  skip_blanks();
-  look_ahead(longest_number);
   double value = 0;
-  const std::string_view text = ahead();
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || (end != text.data() + text.size() && !gmsh_blank(*end)) || !std::isfinite(value))
-    fail(std::string(what) + " (a finite number)", next_text());
-  at_ += static_cast<std::size_t>(end - text.data());
+  const std::size_t length = length_of(value);
+  if (length == 0 || !std::isfinite(value)) fail(std::string(what) + " (a finite number)", next_text());
+  at_ += length;
   return value;
 }
 

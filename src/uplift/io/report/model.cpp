@@ -260,9 +260,9 @@ void write_points(JsonWriter& json, const BuiltCase& built, const RunResult& res
 std::optional<int> node_on_free_surface(const Case& read, const BuiltCase& built, const std::string& name, const std::vector<int>& drawn) {
   if (!read.mesh || !read.mesh->free.contains(name) || drawn.empty()) return std::nullopt;
   const std::vector<FreeFace>& faces = read.mesh->free.at(name);
-  const Vec3& middle = faces[faces.size() / 2].corners.front();
+  const Vec3& place = faces[faces.size() / 2].corners.front();
   return *std::ranges::min_element(
-      drawn, {}, [&](int node) { return (built.model.nodes[static_cast<std::size_t>(node)].position - middle).squaredNorm(); });
+      drawn, {}, [&](int node) { return (built.model.nodes[static_cast<std::size_t>(node)].position - place).squaredNorm(); });
 }
 
 void write_uplifted(JsonWriter& json, const Model& model, const std::vector<const Frame*>& frames) {

@@ -23,8 +23,8 @@ void write_uplifted_shares(JsonWriter& json, const ReportInput& input);
 void write_tables(JsonWriter& json, const ReportInput& input);
 void write_charts(JsonWriter& json, const ReportInput& input);
 void write_model(JsonWriter& json, const Case& read, const BuiltCase& built);
-/// Of the drawn nodes of the model the one at which a load on a surface beside a cut is shown, next to the middle of this surface; none for
-/// a group of the mesh.
+/// Of the drawn nodes of the model the one at which a load on a surface beside a cut is shown, next to one of the faces of this surface;
+/// none for a group of the mesh.
 std::optional<int> node_on_free_surface(const Case& read, const BuiltCase& built, const std::string& name, const std::vector<int>& drawn);
 void write_animations(JsonWriter& json, const ReportInput& input);
 /// The member "uplifted": share of the area in every frame, by interface.
