@@ -145,6 +145,22 @@ step = 1e-3
     def step_of(self, bounds, part):
         return next((bound["step"] for bound in bounds if part in bound["reason"]), None)
 
+    def test_a_peak_of_a_floor_spectrum_without_damping_is_taken_for_one_of_half_a_per_cent(self):
+        floor = '[[output.floor_spectrum]]\nname = "head"\nnode = "top"\ndirection = [0, 1]\n'
+        bounds = {
+            damping: self.stick('"unilateral"', 2e4, 5e3, "lagrange", f"{floor}damping = [{damping}]\n") for damping in (0.0, 0.003, 0.02)
+        }
+        free = math.sqrt(4e7 * (1 / 2e4 + 1 / 5e3)) / (2 * math.pi)
+        for damping, words in (
+            (0.0, "damped by 0 % together, taken as 0.5 % at least"),
+            (0.003, "damped by 0.3 % together, taken as 0.5 % at least"),
+            (0.02, "damped by 2 % together"),
+        ):
+            reason = next(bound["reason"] for bound in bounds[damping] if "peak of the floor spectra" in bound["reason"])
+            self.assertTrue(reason.endswith(words), reason)
+            step = self.step_of(bounds[damping], "peak of the floor spectra")  # (w h)^2 = 0.24 times the damping (theory, F7)
+            self.assertAlmostEqual(step * 2 * math.pi * free / math.sqrt(0.24 * max(damping, 0.005)), 1, delta=1e-6)
+
     def test_an_open_base_vibrates_faster_than_a_bonded_one(self):
         # k = E A/h = 4e7 N/m. Bonded on rigid ground the head alone moves, w^2 = k/m; in the air both masses do, w^2 = k (1/m + 1/m_f)
         bounds = self.stick('"unilateral"', 2e4, 5e3, "lagrange")
@@ -170,9 +186,11 @@ step = 1e-3
     def test_a_floor_at_the_lip_of_a_joint_resolves_its_impacts(self):
         # square cells of 1 m: the corner of the block has a quarter of one cell, the soil below it a quarter of two, the point of the joint
         # half a face; both vibrate on it with w^2 = A K (1/m + 1/m')
-        def step_for(stiffness, place):
+        def step_for(stiffness, place, cell="quad4", more=""):
             self.write(f"""title = "lip"
 bonded = false
+[mesh.soil_box]
+cell = "{cell}"
 [mesh.soil_box.soil]
 width = 8
 size = 1
@@ -212,7 +230,7 @@ step = 1e-3
 name = "lip"
 at = {place}
 direction = [0, 1]
-""")
+{more}""")
             bounds = json.loads(self.uplift("check", "case.toml", "--json").stdout)["step_bounds"]
             return self.step_of(bounds, "the faces of the joint at a floor")
 
@@ -220,6 +238,24 @@ direction = [0, 1]
             own = math.sqrt(0.5 * stiffness * (1 / 1000 + 1 / 100)) / (2 * math.pi)
             self.assertAlmostEqual(step_for(stiffness, "[-2, 0]") * 8 * min(own, 1000), 1, delta=1e-6)
         self.assertIsNone(step_for(2e9, "[-2, 1]"))
+
+        def frequency(area, *mobilities):
+            return math.sqrt(area * 2e9 * sum(mobilities)) / (2 * math.pi)
+
+        # quad8: a sixth of the face (Simpson); of a cell, a corner has 3/76: the integrals of the squares of its shape functions are in the
+        # ratio 6 (corners) to 32 (mid-sides) (Cook et al., Concepts and Applications of FEA, 13.3)
+        corner = 3 / 76
+        self.assertAlmostEqual(step_for(2e9, "[-2, 0]", "quad8") * 8 * frequency(1 / 6, 1 / (4000 * corner), 1 / (400 * corner)), 1, delta=1e-6)
+        # a rigid block of 6400 kg, wherever its master is: its corner turns with it. The lumped masses of 1/8, 1/4, 1/4, 1/4, 1/8 along
+        # each axis, 1 m apart, have the squared radius of gyration 1.5 m2
+        turning = 2**2 / (6400 * (1.5 + 1.5))
+        rigid = frequency(0.5, 1 / 1000, 1 / 6400 + turning)
+        for master in ("", 'node = "far"\n[nodes]\nfar = [30, 5]\n'):
+            found = step_for(2e9, "[-2, 0]", more=f'[[rigid]]\ngroup = "block"\n{master}')
+            self.assertAlmostEqual(found * 8 * rigid, 1, delta=1e-6)
+        # soil that is held there has no part
+        held = step_for(2e9, "[-2, 0]", more='[[support]]\ngroup = "soil_top"\nfixed = ["ux", "uy"]\n')
+        self.assertAlmostEqual(held * 8 * frequency(0.5, 1 / 100), 1, delta=1e-6)
 
     def test_a_mode_without_damping_keeps_the_phase_error_until_the_next_impact(self):
         # two masses on the springs k of the column and K of the joint: w^2 of K + k and k by hand

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "uplift/base/format.h"
 #include "uplift/case/mesh/mesh.h"
+#include "uplift/math/sparse_solvers.h"
 
 namespace uplift {
 namespace {
@@ -104,37 +106,91 @@ void bound_by_floors(const RunPlan& plan, const ResolvedModes& modes, std::vecto
   for (const std::vector<ResolvedMode>* each : {&modes.bonded, &modes.base_free})
     for (const ResolvedMode& mode : *each) {
       if (!(mode.frequency > 0 && mode.frequency <= highest)) continue;
-      const double width = std::max(mode.damping + least_damping, least_width_of_peaks);
+      const double damping = mode.damping + least_damping, width = std::max(damping, least_width_of_peaks);
       const double steps = 2 * std::numbers::pi / std::sqrt(12 * accepted_difference * 2 * width), step = 1 / (steps * mode.frequency);
       if (smallest.step > 0 && step >= smallest.step) continue;
+      const std::string damped = damping < least_width_of_peaks
+                                     ? fmt::format("{:.2g} % together, taken as {:.2g} % at least", 100 * damping, 100 * width)
+                                     : fmt::format("{:.2g} % together", 100 * width);
       smallest = {step, fmt::format("{:.0f} steps a period of the peak of the floor spectra at {}, where the mode and the equipment are "
-                                    "damped by {:.2g} % together",
-                                    steps, format_quantity(mode.frequency, "Hz"), 100 * width)};
+                                    "damped by {}",
+                                    steps, format_quantity(mode.frequency, "Hz"), damped)};
     }
   if (smallest.step > 0) bounds.push_back(std::move(smallest));
 }
 
-/// Masses of the nodes [kg]: sums of the rows of the mass matrix along one axis.
-Vector masses_of_nodes(const Model& model) {
-  const Sparse mass = assembled(model, &Local::mass);
-  Vector sums = Vector::Zero(static_cast<Index>(model.nodes.size()));
-  const int axis = model.space.up();
-  for (Index column = 0; column < mass.outerSize(); ++column)
-    for (Sparse::InnerIterator entry(mass, column); entry; ++entry)
-      if (model.space.index_of(entry.row()) == axis && model.space.index_of(column) == axis)
-        sums[model.space.node_of(entry.row())] += entry.value();
-  return sums;
+/// Lumped mass of one element: the diagonal of its matrix, scaled so that the translations have all of its mass (Hinton, Rock and
+/// Zienkiewicz 1976). Sums of rows are negative at the corners of quadratic cells. The mass of a single node is whole as it is.
+void add_lumped(const Element& element, Space space, std::vector<Triplet>& entries) {
+  Matrix mass;
+  Local wanted;
+  wanted.mass = &mass;
+  element.form(wanted);
+  const std::vector<int> nodes(element.nodes().begin(), element.nodes().end());
+  const Index each = element.unknowns_per_node();
+  double total = 0, diagonal = 0;
+  for (Index j = 0; j < mass.cols(); ++j) {
+    if (j % each >= space.dimension) continue;
+    diagonal += mass(j, j);
+    for (Index i = j % each; i < mass.rows(); i += each) total += mass(i, j);
+  }
+  const bool single = nodes.size() == 1;
+  const double scale = single ? 1 : diagonal > 0 ? total / diagonal : 0;
+  const auto unknown = [&](Index i) { return space.unknowns() * nodes[static_cast<std::size_t>(i / each)] + static_cast<int>(i % each); };
+  for (Index j = 0; j < mass.cols(); ++j)
+    for (Index i = single ? 0 : j; i < (single ? mass.rows() : j + 1); ++i)
+      if (mass(i, j) != 0) entries.emplace_back(unknown(i), unknown(j), scale * mass(i, j));
 }
 
+/// How easily the lumped masses follow a force on an interface row: b M^-1 b^T on the free unknowns, so that the faces of a rigid body move
+/// with all of its mass and its rotary inertia, and supported ones not at all.
+class Mobility {
+ public:
+  explicit Mobility(const Model& model) {
+    std::vector<Triplet> entries;
+    for (const auto& element : model.elements) add_lumped(*element, model.space, entries);
+    Sparse full(model.full_unknowns(), model.full_unknowns());
+    full.setFromTriplets(entries.begin(), entries.end());
+    Sparse mass = model.expansion * full * model.reduction;
+    diagonal_ = mass.diagonal();
+    // Unknowns without mass are left out; motions without mass get a little, by which they are known.
+    std::vector<Triplet> more;
+    for (Index i = 0; i < diagonal_.size(); ++i)
+      more.emplace_back(static_cast<int>(i), static_cast<int>(i), diagonal_[i] > 0 ? 1e-9 * diagonal_[i] : 1);
+    Sparse little(mass.rows(), mass.cols());
+    little.setFromTriplets(more.begin(), more.end());
+    mass += little;
+    factor_.compute(mass);
+  }
+
+  /// 1/kg; 0: nothing moves, or something without mass.
+  double of_row(const Sparse& b, Index row) const {
+    Vector force = Vector::Zero(diagonal_.size());
+    double alone = 0;  // without what couples the unknowns
+    for (Index i = 0; i < diagonal_.size(); ++i)
+      if (diagonal_[i] > 0) {
+        force[i] = b.coeff(row, i);
+        alone += force[i] * force[i] / diagonal_[i];
+      }
+    if (!(alone > 0) || factor_.info() != Success) return 0;
+    const double whole = force.dot(Vector(factor_.solve(force)));
+    return whole < 1e6 * alone ? whole : 0;
+  }
+
+ private:
+  Vector diagonal_;
+  SparseLdlt factor_;
+};
+
 /// A floor at the lip of a joint feels what each closing does to the two faces there: half a period of their own vibration on the closed
-/// joint, w^2 = A K (1/m + 1/m') with the masses of the nodes.
+/// joint, w^2 = A K (1/m + 1/m') with the masses that move with the faces.
 void bound_by_lips(const BuiltCase& built, std::vector<StepBound>& bounds) {
   const Model& model = built.model;
   if (built.plan.floors.empty() || model.interfaces.empty() || model.distributed != nullptr) return;
   std::set<int> floors;
   for (const FloorRequest& floor : built.plan.floors) floors.insert(floor.node);
   const SparseRows rows = model.assembly.b;
-  Vector masses;
+  std::optional<Mobility> mobility;
   double highest = 0;
   Index first = 0;
   for (const Interface& joint : model.interfaces) {
@@ -146,13 +202,8 @@ void bound_by_lips(const BuiltCase& built, std::vector<StepBound>& bounds) {
       for (SparseRows::InnerIterator entry(rows, first + row); entry; ++entry)
         at_floor = at_floor || floors.contains(static_cast<int>(model.space.node_of(entry.col())));
       if (!at_floor) continue;
-      if (masses.size() == 0) masses = masses_of_nodes(model);
-      double mobility = 0;  // 1/kg
-      for (SparseRows::InnerIterator entry(rows, first + row); entry; ++entry)
-        if (const double mass = masses[model.space.node_of(entry.col())];
-            mass > 0 && model.space.index_of(entry.col()) < model.space.dimension)
-          mobility += entry.value() * entry.value() / mass;
-      const double square = joint.weight[row % points] * stiffness[row / points] * mobility;
+      if (!mobility) mobility.emplace(model);
+      const double square = joint.weight[row % points] * stiffness[row / points] * mobility->of_row(joint.b, row);
       highest = std::max(highest, std::sqrt(square) / (2 * std::numbers::pi));
     }
     first += joint.rows();
