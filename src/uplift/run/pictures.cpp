@@ -26,16 +26,14 @@ void Pictures::finish() {
   if (instant_.empty()) return;
   std::vector<Vector*> missing;
   for (auto frame = frames_.end() - std::ssize(instant_); frame != frames_.end(); ++frame) missing.push_back(&frame->displacement);
-  make(coordinates_, instant_, missing);
+  make<together>(coordinates_, instant_, missing);
   instant_.clear();
 }
 
 Vector Pictures::displacement(MotionInstant at, const Vector& coordinates) const {
   Vector made;
   if (waits_) {
-    Matrix alone = Matrix::Zero(together, coordinates.size());
-    alone.row(0) = coordinates.transpose();
-    make(alone, {at}, {&made});
+    make<1>(coordinates.transpose(), {at}, {&made});
     return made;
   }
   if (plan_.pictured.empty()) return model_.full(coordinates, 0, at);
@@ -46,6 +44,7 @@ Vector Pictures::displacement(MotionInstant at, const Vector& coordinates) const
   return made;
 }
 
+template <int Rows>
 void Pictures::make(const Matrix& coordinates, const std::vector<MotionInstant>& at, const std::vector<Vector*>& displacements) const {
   const int each = model_.space.unknowns();
   const Index count = plan_.pictured.empty() ? model_.full_unknowns() : each * std::ssize(plan_.pictured);
@@ -53,7 +52,7 @@ void Pictures::make(const Matrix& coordinates, const std::vector<MotionInstant>&
   for (Index i = 0; i < count; ++i) {
     const int unknown = plan_.pictured.empty() ? static_cast<int>(i)
                                                : each * plan_.pictured[static_cast<std::size_t>(i / each)] + static_cast<int>(i % each);
-    Eigen::Array<double, together, 1> sum = Eigen::Array<double, together, 1>::Zero();
+    Eigen::Array<double, Rows, 1> sum = Eigen::Array<double, Rows, 1>::Zero();
     for (Sparse::InnerIterator entry(model_.expansion, unknown); entry; ++entry)
       sum += entry.value() * coordinates.col(entry.row()).array();
     for (std::size_t k = 0; k < displacements.size(); ++k) {

@@ -21,13 +21,14 @@ class Pictures {
 
  private:
   static constexpr int together = 16;
-  /// Displacements of pictures from their coordinates, one picture a row.
+  /// Displacements of pictures from their coordinates, one picture a row, of `Rows` rows.
+  template <int Rows>
   void make(const Matrix& coordinates, const std::vector<MotionInstant>& at, const std::vector<Vector*>& displacements) const;
 
   const Model& model_;
   const RunPlan& plan_;
   std::vector<Frame>& frames_;
-  bool waits_ = false;                  // until there are many
+  bool waits_ = false;                  // a frame gets its displacements with up to 15 others: the model is a reduced one
   Matrix coordinates_;                  // together x free unknowns, of the last frames
   std::vector<MotionInstant> instant_;  // of the frames whose displacements are missing
 };

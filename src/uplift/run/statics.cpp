@@ -125,10 +125,10 @@ void Runner::stand() {
   Recorder recorder(model_, plan_, run_.state, run_.result.final_energy, nullptr, views_, {model_, second_order_of(plan_.stages.back())}, 0,
                     0, run_.result);
   recorder.record(true);
+  if (plan_.frames > 0) recorder.picture(run_.state);
   recorder.finish();
   run_.result.table = std::move(run_.load_steps.table);
   run_.result.combined = std::move(run_.load_steps.combined);
-  if (plan_.frames > 0) recorder.picture(run_.state);
 }
 
 /// The geometric stiffness of the present static state, and equilibrium with it.
