@@ -308,21 +308,24 @@ void RowNewton::coordinates_of(const Vector& force, Vector& z) {
   z *= -1;
 }
 
-/// Whether the forces that the iteration has arrived at solve the problem: |G| = |C^T s| against |z| = |C^T P|, for which the sum of
-/// sqrt(F_ii) |s_i| is a bound.
+/// Whether the forces that the iteration has arrived at solve the problem: |G| = |C^T s| against the largest |z_j| (balance_scale). Without
+/// reading C the sum of sqrt(F_ii) |s_i|, which is not less than |G|, is held against |z| = sqrt(P F P) over the root of the number of
+/// coordinates, which is not more than the largest |z_j|.
 bool RowNewton::is_solution(double tolerance, NewtonWork& work, InterfaceSolution& solution, Result& result) {
   look_at_forces(work, solution);
-  const double scale = std::sqrt(std::max(0.0, force_.dot(problem_->free_opening - opening_)));
+  const double coordinates = static_cast<double>(problem_->model->factor.cols());
+  double scale = std::sqrt(std::max(0.0, force_.dot(problem_->free_opening - opening_)) / coordinates);
   double size = share_.dot(rest_.cwiseAbs());
   if (!(size <= tolerance * scale)) {
     coordinates_of(force_, solution.z);
     work.gradient.noalias() = problem_->model->factor.transpose() * rest_;
     size = work.gradient.norm();
+    scale = balance_scale(*problem_, work, solution);
   }
   result.residual = size / std::max(scale, 1e-300);
   result.converged = size <= tolerance * scale;
   if (!result.converged && result.residual <= 1e-9) {
-    const double noise = 8 * std::sqrt(static_cast<double>(solution.z.size()));
+    const double noise = 8 * std::sqrt(coordinates);
     result.converged = size <= noise * balance_round_off(*problem_, work, solution);
   }
   return result.converged;

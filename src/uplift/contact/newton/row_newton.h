@@ -18,8 +18,9 @@ namespace uplift {
 ///
 /// s, too, has only entries where a law bends on its way; those that cannot matter are taken as zero, so that a product with F0 costs as
 /// many columns as there are others. The openings follow from dg, whose round-off is that of F0; where the iteration has arrived they are
-/// made anew from the forces, and the residual |C^T s| is that of Newton's method in z. It is no method of its own: where
-/// it does not arrive soon, the general method starts anew.
+/// made anew from the forces. Whether they solve the problem is judged as by Newton's method in z, |C^T s| against the largest of |z| and
+/// |C^T p|, or, where that suffices, by bounds that need no product with C and are never less strict (is_solution). It is no method of its
+/// own: where it does not arrive soon, the general method starts anew.
 class RowNewton final : public MethodWork {
  public:
   /// Beyond so many rows iterations of Krylov's kind are faster than factors (PointRows).
