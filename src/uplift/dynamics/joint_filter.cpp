@@ -83,34 +83,34 @@ void JointFilter::take_over(const State& now) {
 
 void JointFilter::begin(const State& now, double shrink, JointFilterInput& input) {
   if (ready_ == &input && shrink == 1) return;
-  // seldom, and out of line: its registers would be saved in every step
-  const auto make = [&]() __attribute__((noinline)) {
-    ready_ = nullptr;
-    const FilterMemory& memory = now.filter;
-    input.gain = gain_;
-    input.pole = pole_;
-    input.coefficient.resize(memory.opening.size());
-    input.lag.resize(memory.opening.size());
-    for (const Part& part : parts_) {
-      const int normal = part.components - 1;
-      const double* contact = memory.tangent.data() + part.first + normal * part.points;
-      for (int c = 0; c < part.components; ++c) {
-        const int first = part.first + c * part.points;
-        const Beginning beginning{gain_, 0.5 * part.stiffness[normal], 0.5 * part.stiffness[c], c == normal};
-        const double *tangent = memory.tangent.data() + first, *filtered = memory.opening.data() + first,
-                     *before = memory.coefficient.data() + first;
-        double *coefficient = input.coefficient.data() + first, *lag = input.lag.data() + first;
-        for_lanes(part.points, [&](const auto& at) {
-          beginning.put(at, at(contact), at(tangent), at(before), shrink * at(filtered), coefficient, lag);
-        });
-      }
+  begin_anew(now, shrink, input);
+}
+
+/// From the memory of the state, not from what the end of the last step has left.
+void JointFilter::begin_anew(const State& now, double shrink, JointFilterInput& input) {
+  ready_ = nullptr;
+  const FilterMemory& memory = now.filter;
+  input.gain = gain_;
+  input.pole = pole_;
+  input.coefficient.resize(memory.opening.size());
+  input.lag.resize(memory.opening.size());
+  for (const Part& part : parts_) {
+    const int normal = part.components - 1;
+    const double* contact = memory.tangent.data() + part.first + normal * part.points;
+    for (int c = 0; c < part.components; ++c) {
+      const int first = part.first + c * part.points;
+      const Beginning beginning{gain_, 0.5 * part.stiffness[normal], 0.5 * part.stiffness[c], c == normal};
+      const double *tangent = memory.tangent.data() + first, *filtered = memory.opening.data() + first,
+                   *before = memory.coefficient.data() + first;
+      double *coefficient = input.coefficient.data() + first, *lag = input.lag.data() + first;
+      for_lanes(part.points,
+                [&](const auto& at) { beginning.put(at, at(contact), at(tangent), at(before), shrink * at(filtered), coefficient, lag); });
     }
-    for (Footing& footing : footings_) {
-      look(footing, now);
-      begin_footing(footing, now, shrink, input);
-    }
-  };
-  make();
+  }
+  for (Footing& footing : footings_) {
+    look(footing, now);
+    begin_footing(footing, now, shrink, input);
+  }
 }
 
 /// Elastic openings and C = b * slope of the law there.

@@ -35,6 +35,8 @@ class JointFilter {
     double elastic[most_components] = {}, lag[most_components] = {}, coefficient[most_components * most_components] = {};
   };
   void look(Footing& footing, const State& now) const;
+  /// Seldom, and out of line: its registers would be saved in every step.
+  [[gnu::noinline]] void begin_anew(const State& now, double shrink, JointFilterInput& input);
   void begin_footing(Footing& footing, const State& now, double shrink, JointFilterInput& input) const;
   double end_footing(Footing& footing, const InterfaceSolution& solution, double to_mean, const State& now, State& next,
                      JointFilterInput& input) const;

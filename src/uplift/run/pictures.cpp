@@ -37,31 +37,35 @@ Vector Pictures::displacement(MotionInstant at, const Vector& coordinates) const
     return made;
   }
   if (plan_.pictured.empty()) return model_.full(coordinates, 0, at);
-  const int each = model_.space.unknowns();
-  made.resize(each * std::ssize(plan_.pictured));
-  for (Index i = 0; i < made.size(); ++i)
-    made[i] = model_.full(each * plan_.pictured[static_cast<std::size_t>(i / each)] + static_cast<int>(i % each), coordinates, 0, at);
+  made.resize(count());
+  for (Index i = 0; i < made.size(); ++i) made[i] = model_.full(unknown(i), coordinates, 0, at);
   return made;
+}
+
+Index Pictures::count() const {
+  return plan_.pictured.empty() ? model_.full_unknowns() : model_.space.unknowns() * std::ssize(plan_.pictured);
+}
+
+int Pictures::unknown(Index i) const {
+  const int each = model_.space.unknowns();
+  return plan_.pictured.empty() ? static_cast<int>(i)
+                                : each * plan_.pictured[static_cast<std::size_t>(i / each)] + static_cast<int>(i % each);
 }
 
 template <int Rows>
 void Pictures::make(const Matrix& coordinates, const std::vector<MotionInstant>& at, const std::vector<Vector*>& displacements) const {
-  const int each = model_.space.unknowns();
-  const Index count = plan_.pictured.empty() ? model_.full_unknowns() : each * std::ssize(plan_.pictured);
-  for (Vector* displacement : displacements) displacement->resize(count);
-  for (Index i = 0; i < count; ++i) {
-    const int unknown = plan_.pictured.empty() ? static_cast<int>(i)
-                                               : each * plan_.pictured[static_cast<std::size_t>(i / each)] + static_cast<int>(i % each);
+  for (Vector* displacement : displacements) displacement->resize(count());
+  for (Index i = 0; i < count(); ++i) {
     Eigen::Array<double, Rows, 1> sum = Eigen::Array<double, Rows, 1>::Zero();
-    for (Sparse::InnerIterator entry(model_.expansion, unknown); entry; ++entry)
+    for (Sparse::InnerIterator entry(model_.expansion, unknown(i)); entry; ++entry)
       sum += entry.value() * coordinates.col(entry.row()).array();
-    for (std::size_t k = 0; k < displacements.size(); ++k) {
-      double value = sum[static_cast<Index>(k)];
-      for (const PrescribedMotion& motion : model_.motions)
-        if (motion.shape[unknown] != 0) value += at[k].share * motion.shape[unknown] * motion.function->value(at[k].time);
-      (*displacements[k])[i] = value;
-    }
+    for (std::size_t k = 0; k < displacements.size(); ++k) (*displacements[k])[i] = sum[static_cast<Index>(k)];
   }
+  for (const PrescribedMotion& motion : model_.motions)
+    for (std::size_t k = 0; k < displacements.size(); ++k) {
+      const double value = at[k].share * motion.function->value(at[k].time);
+      for (Index i = 0; i < count(); ++i) (*displacements[k])[i] += value * motion.shape[unknown(i)];
+    }
 }
 
 }  // namespace uplift

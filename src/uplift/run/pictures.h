@@ -16,11 +16,14 @@ class Pictures {
   void add(Frame frame, const State& state);
   /// Makes all displacements that are still missing.
   void finish();
-  /// Those of a single picture: of all unknowns, or of those of the pictured nodes.
+  /// Those of a single picture.
   Vector displacement(MotionInstant at, const Vector& coordinates) const;
 
  private:
   static constexpr int together = 16;
+  /// Number of displacements of a picture, and the full unknown of each: all of them, or those of the pictured nodes.
+  Index count() const;
+  int unknown(Index i) const;
   /// Displacements of pictures from their coordinates, one picture a row, of `Rows` rows.
   template <int Rows>
   void make(const Matrix& coordinates, const std::vector<MotionInstant>& at, const std::vector<Vector*>& displacements) const;

@@ -84,7 +84,7 @@ void GmshCursor::skip_blanks() {
 }
 
 template <class Number>
-std::size_t GmshCursor::length_of(Number& value) {
+std::size_t GmshCursor::read_number(Number& value) {
   skip_blanks();
   const std::size_t length = length_before(gmsh_blank);
   const char* const text = window_.data() + at_;
@@ -94,7 +94,7 @@ std::size_t GmshCursor::length_of(Number& value) {
 
 std::int64_t GmshCursor::text_integer(const char* what, std::int64_t least, std::int64_t most) {
   std::int64_t value = 0;
-  const std::size_t length = length_of(value);
+  const std::size_t length = read_number(value);
   if (length == 0 || value < least || value > most)
     fail(least == 0 ? std::string(what) + " (an integer, not negative)" : std::string(what) + " (an integer)", next_text());
   at_ += length;
@@ -103,7 +103,7 @@ std::int64_t GmshCursor::text_integer(const char* what, std::int64_t least, std:
 
 double GmshCursor::text_real(const char* what) {
   double value = 0;
-  const std::size_t length = length_of(value);
+  const std::size_t length = read_number(value);
   if (length == 0 || !std::isfinite(value)) fail(std::string(what) + " (a finite number)", next_text());
   at_ += length;
   return value;

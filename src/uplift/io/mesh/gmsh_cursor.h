@@ -70,9 +70,9 @@ class GmshCursor {
   std::size_t length_before(Wanted wanted);
   void skip_blanks();
   std::string next_text();
-  /// Reads the number ahead and returns the length of its text, up to the next blank; 0 when no number stands there.
+  /// Reads the number ahead without passing it. Returns the length of its text, up to the next blank; 0 when no number stands there.
   template <class Number>
-  std::size_t length_of(Number& value);
+  std::size_t read_number(Number& value);
   std::int64_t text_integer(const char* what, std::int64_t least, std::int64_t most);
   double text_real(const char* what);
   int raw_integer(const char* what);
