@@ -135,8 +135,18 @@ bool is_parallelogram(const std::vector<Vec3>& x) {
   return x.size() == 4 && (x[0] - x[1] + x[2] - x[3]).norm() <= round_off * (x[2] - x[0]).norm();
 }
 
-/// A face of cells of the second degree, or a parallelogram across a hexahedron or a wedge: the shape functions are at most cubic in both
-/// directions. Simpson's rule in each.
+/// A parallelogram across a hexahedron or a wedge, on which the shape functions are cubic: its corners, which neighbours share, and its
+/// middle. With r and s from -1 to 1 along its sides the means of r^2 and s^2 are 4/12, and odd terms vanish: exact to degree 3.
+void add_parallelogram(const CutFace& face, Points& points, Facets& facets) {
+  const std::vector<Vec3>& x = face.corners;
+  const double area = cross(x[1] - x[0], x[3] - x[0]).norm();
+  const int middle = points.add((x[0] + x[1] + x[2] + x[3]) / 4, area * 2 / 3);
+  std::array<int, 4> corner{};
+  for (std::size_t k = 0; k < 4; ++k) corner[k] = points.add(x[k], area / 12);
+  for (std::size_t k = 0; k < 4; ++k) facets.pieces.push_back({{corner[k], corner[(k + 1) % 4], middle}, area / 4});
+}
+
+/// A face of cells of the second degree: the shape functions are at most cubic in both directions. Simpson's rule in each.
 void add_simpson_face(const CutFace& face, Points& points, Facets& facets) {
   const std::vector<Vec3>& x = face.corners;
   constexpr std::array<std::array<int, 2>, 8> ring{{{-1, -1}, {0, -1}, {1, -1}, {1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}}};
@@ -294,9 +304,10 @@ CutJoints cut_joints(const Mesh& mesh, const std::vector<CutFace>& faces, const 
       add_cut_line(face, thickness, points);
     else if (face.level && face.corners.size() == 4 && info(mesh.type(face.upper)).corners > 4)
       add_level_quadrilateral(face, points, made.facets);
-    else if (face.corners.size() == 4 &&
-             (info(mesh.type(face.upper)).linear != mesh.type(face.upper) || (!face.level && is_parallelogram(face.corners))))
+    else if (face.corners.size() == 4 && info(mesh.type(face.upper)).linear != mesh.type(face.upper))
       add_simpson_face(face, points, made.facets);
+    else if (!face.level && is_parallelogram(face.corners))
+      add_parallelogram(face, points, made.facets);
     else
       add_triangles(face, points, made.facets);
   }

@@ -7,10 +7,10 @@ namespace uplift {
 /// Joint points on the faces that a plane has cut into a mesh. Either side follows the nodes of its cell by the cell's shape functions
 /// (docs/theory/cut_elements.md). On level faces (CutFace::level) the points stand at the corners of the face, which neighbours share:
 /// in rectangles and hexahedra tractions do not oscillate there, however stiff the joint. On inclined ones the shape functions are
-/// quadratic along the face in the plane, cubic in space: Simpson's rule, on parallelograms in both directions; else on triangles the rule
-/// of seven points (degree 3) with the corners and the middles of the sides. Faces of cells of the second degree have these rules too, with
-/// four corners Simpson's in both directions.
-/// Normals are that of the plane. `thickness` [m] multiplies the lengths of plane meshes.
+/// quadratic along the face in the plane, cubic in space: Simpson's rule, on parallelograms the corners and the middle; else on triangles
+/// the rule of seven points (degree 3) with the corners and the middles of the sides. Faces of cells of the second degree have Simpson's
+/// and that of triangles too, with four corners Simpson's in both directions. Normals are that of the plane. `thickness` [m] multiplies the
+/// lengths of plane meshes.
 struct CutJoints {
   std::vector<JointPoint> points;  // in the plane along the line; in space by rows of growing t2, then t1 (local_axis)
   Facets facets;

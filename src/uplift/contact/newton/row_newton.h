@@ -24,7 +24,7 @@ namespace uplift {
 class RowNewton final : public MethodWork {
  public:
   /// Beyond so many rows iterations of Krylov's kind are faster than factors (PointRows).
-  static constexpr Index most_rows = 400;
+  static constexpr Index most_rows = 500;
   static bool suits(const ContactModel&);
 
   struct Result {
