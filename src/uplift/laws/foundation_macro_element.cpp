@@ -110,6 +110,7 @@ MacroStrength strength_of(const Footprint& footprint, const Values& values) {
   made.ultimate = values.has("V_u") ? values.number("V_u") : made.service;
   for (const char* key : {"V_u", "w_ref"})
     if (values.has(key) && !values.has("V_s")) fail(values, key, "V_s too", "none");
+  if (values.has("w_ref") && !values.has("V_u")) fail(values, "w_ref", "V_u too", "none");
   if (made.ultimate < made.service) fail(values, "V_u", "an ultimate load of at least V_s", "a smaller one");
   if (made.ultimate > made.service && !values.has("w_ref"))
     fail(values, "", "w_ref, the settlement over which V_s grows towards V_u", "none");

@@ -423,6 +423,7 @@ TEST(Foundation, MistakesAreRefused) {
   EXPECT_NE(refusal(replaced(macro, "K_r = 1.8e9", "K_r = 1.8e9, V_s = 3e6, V_u = 2e6")).find("at least V_s"), std::string::npos);
   EXPECT_NE(refusal(replaced(macro, "width = 6", "width = \"5 um\"")).find("for a side of 5e-06 m"), std::string::npos);
   EXPECT_NE(refusal(replaced(macro, "K_r = 1.8e9", "K_r = 1.8e9, w_ref = 0.01")).find("V_s too"), std::string::npos);
+  EXPECT_NE(refusal(replaced(macro, "K_r = 1.8e9", "K_r = 1.8e9, V_s = 2e7, w_ref = 0.01")).find("V_u too"), std::string::npos);
   EXPECT_NE(refusal(replaced(good, "\"elastic\"", "\"macro\"")).find("macro_element"), std::string::npos);
 
   const auto refused_with = [&](const std::string& keys) { return refusal(replaced(macro, "K_r = 1.8e9", "K_r = 1.8e9, " + keys)); };
