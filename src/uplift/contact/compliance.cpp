@@ -15,6 +15,18 @@ struct RankFactors {
   Sparse v;  // touched unknowns x r
 };
 
+/// a^T b; by full matrices where few entries of a are zero, as in a reduced model.
+Matrix transposed_product(const Sparse& a, const Matrix& b) {
+  if (a.nonZeros() > a.size() / 2) return Matrix(a).transpose() * b;
+  return a.transpose() * b;
+}
+
+/// a^T a
+Matrix gram(const Sparse& a) {
+  if (a.nonZeros() > a.size() / 2) return transposed_product(a, Matrix(a));
+  return Sparse(a.transpose() * a);
+}
+
 /// Clearly regular: no pivot of the Gram matrix, scaled to a unit diagonal, is small.
 bool independent(Matrix gram) {
   const Vector scale = gram.diagonal().cwiseSqrt().cwiseInverse();
@@ -30,8 +42,8 @@ RankFactors rank_factors(const Sparse& b) {
   const Index rows = b.rows(), columns = b.cols();
   Sparse identity(columns, columns);
   identity.setIdentity();
-  if (columns <= rows && independent(Sparse(b.transpose() * b))) return {Matrix(b), identity};
-  if (columns > rows && independent(Sparse(b * b.transpose()))) return {Matrix(), b.transpose()};
+  if (columns <= rows && independent(gram(b))) return {Matrix(b), identity};
+  if (columns > rows && independent(gram(b.transpose()))) return {Matrix(), b.transpose()};
   const Matrix dense = b;
   constexpr double nothing = 1e-15;
   Vector size = dense.colwise().norm();
@@ -78,7 +90,7 @@ Spread spread_through(const Factor& a, const Sparse& b) {
   const Sparse right = touched * parts.v;  // A^-1 V, all columns at once
   Matrix answer;
   a.solve(Matrix(right), answer);
-  Matrix flexibility = right.transpose() * answer;
+  Matrix flexibility = transposed_product(right, answer);
   flexibility = ((flexibility + flexibility.transpose()) / 2).eval();
   const Cholesky cholesky(flexibility);
   assert(cholesky->info() == Success);  // A is positive definite and V has full rank

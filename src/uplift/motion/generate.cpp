@@ -8,6 +8,7 @@
 #include <numeric>
 #include <random>
 
+#include "uplift/math/lanes.h"
 #include "uplift/math/linalg.h"
 #include "uplift/motion/spectral_fit.h"
 #include "uplift/motion/spectrum.h"
@@ -22,6 +23,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double grain = 1e-5;  // m/s2: values are whole multiples of it
+constexpr int one_thread = 1;   // motions are made side by side
 
 /// Uniform numbers whose bits the C++ standard fixes: its distributions differ between libraries, its engines do not.
 class Draw {
@@ -73,16 +75,24 @@ class Sines {
   }
 
   Vector sum(const Vector& envelope) const {
-    Vector a = Vector::Zero(envelope.size());
-    for (std::size_t i = 0; i < frequencies_.size(); ++i) {
-      const double turn = 2 * pi * frequencies_[i] * options_.step, c = std::cos(turn), s = std::sin(turn);
-      double x = amplitudes_[i] * std::cos(phases_[i]), y = amplitudes_[i] * std::sin(phases_[i]);
-      for (double& value : a) {
-        value += x;
-        const double next = c * x - s * y;
-        y = s * x + c * y;
-        x = next;
-      }
+    const auto count = static_cast<Index>(frequencies_.size());
+    Vector x(count), y(count), c(count), s(count);  // amplitude times cosine and sine of the angle now; those of the angle of a step
+    for (Index i = 0; i < count; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const double turn = 2 * pi * frequencies_[at] * options_.step;
+      c[i] = std::cos(turn), s[i] = std::sin(turn);
+      x[i] = amplitudes_[at] * std::cos(phases_[at]), y[i] = amplitudes_[at] * std::sin(phases_[at]);
+    }
+    Vector a(envelope.size());
+    for (double& value : a) {
+      Lanes together = 0;
+      for_lanes(count, [&](const auto& at) {
+        const Lanes x_now = at(x.data()), y_now = at(y.data()), cosine = at(c.data()), sine = at(s.data());
+        together += x_now;
+        at.put(x.data(), cosine * x_now - sine * y_now);
+        at.put(y.data(), sine * x_now + cosine * y_now);
+      });
+      value = uplift::sum(together);
     }
     return a.cwiseProduct(envelope);
   }
@@ -91,7 +101,8 @@ class Sines {
   void scale(const Vector& acceleration, const TargetSpectrum& target) {
     constexpr double most = 2;
     const std::vector<double> grid = log_spaced(frequencies_.front(), frequencies_.back(), 100);
-    const Spectrum reached = response_spectra(span_of(acceleration), options_.step, grid, {target.damping()}, Spectrum::Kind::psa).front();
+    const Spectrum reached =
+        response_spectra(span_of(acceleration), options_.step, grid, {target.damping()}, Spectrum::Kind::psa, one_thread).front();
     for (std::size_t i = 0; i < frequencies_.size(); ++i)
       amplitudes_[i] *= std::clamp(target.at(frequencies_[i]) / value_at(reached, frequencies_[i]), 1 / most, most);
   }
@@ -135,7 +146,7 @@ SpectralDemand demand_of(const TargetSpectrum& target, const GenerateOptions& op
 
 SpectrumFit fit_at(std::vector<double> frequencies, std::span<const double> acceleration, double step, const TargetSpectrum& target) {
   SpectrumFit fit{.damping = target.damping(), .frequencies = std::move(frequencies), .target = {}, .reached = {}};
-  fit.reached = response_spectra(acceleration, step, fit.frequencies, {fit.damping}, Spectrum::Kind::psa).front().values;
+  fit.reached = response_spectra(acceleration, step, fit.frequencies, {fit.damping}, Spectrum::Kind::psa, one_thread).front().values;
   fit.least_ratio = std::numeric_limits<double>::max();
   const auto count = static_cast<double>(fit.frequencies.size());
   for (std::size_t i = 0; i < fit.frequencies.size(); ++i) {

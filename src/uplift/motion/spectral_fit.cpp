@@ -1,52 +1,82 @@
 #include "uplift/motion/spectral_fit.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "uplift/math/dense.h"
 #include "uplift/motion/oscillator.h"
-#include "uplift/motion/parallel.h"
 
 namespace uplift {
 
 namespace {
 
-/// The largest response of an oscillator: its value w2 x [m/s2] and the number of sub-steps until then.
-struct Extreme {
-  double value = 0;
-  Index at = 0;
+constexpr Index at_once = 32;
+using Numbers = double[at_once];
+
+/// Oscillators with the same number of sub-steps: where each of them responds most, and what its response there owes to every value of the
+/// acceleration. Every loop over them is one that the compiler turns into vector instructions.
+struct Oscillators {
+  alignas(64) Numbers pp, pq, p0, p1, qp, qq, q0, q1;
+  alignas(64) Numbers p, q;
+  alignas(64) Numbers size, value;  // of the largest response w2 x [m/s2]
+  alignas(64) Numbers at;           // number of sub-steps until then
+  int subs = 1;
+
+  void set(Index lane, const OscillatorStep& s) {
+    pp[lane] = s.pp, pq[lane] = s.pq, p0[lane] = s.p0, p1[lane] = s.p1;
+    qp[lane] = s.qp, qq[lane] = s.qq, q0[lane] = s.q0, q1[lane] = s.q1;
+  }
+  void find_extremes(const Vector& acceleration);
+  void fill_rows(const Vector& envelope, Index first, Index count, Matrix& rows);
 };
 
-Extreme extreme_of(const Vector& acceleration, const OscillatorStep& s, int subs) {
-  Extreme found;
-  double p = 0, q = 0;
-  for (Index i = 1, sub_step = 1; i < acceleration.size(); ++i) {
+void Oscillators::find_extremes(const Vector& acceleration) {
+  for (Index j = 0; j < at_once; ++j) p[j] = q[j] = size[j] = value[j] = at[j] = 0;
+  double sub_step = 0;
+  for (Index i = 1; i < acceleration.size(); ++i) {
     const double start = acceleration[i - 1], slope = (acceleration[i] - start) / subs;
-    for (int k = 0; k < subs; ++k, ++sub_step) {
+    for (int k = 0; k < subs; ++k) {
       const double from = start + slope * k, to = start + slope * (k + 1);
-      const double next = s.pp * p + s.pq * q + s.p0 * from + s.p1 * to;
-      q = s.qp * p + s.qq * q + s.q0 * from + s.q1 * to;
-      p = next;
-      if (std::abs(p) > std::abs(found.value)) found = {p, sub_step};
+      ++sub_step;
+      for (Index j = 0; j < at_once; ++j) {
+        const double next = pp[j] * p[j] + pq[j] * q[j] + p0[j] * from + p1[j] * to;
+        q[j] = qp[j] * p[j] + qq[j] * q[j] + q0[j] * from + q1[j] * to;
+        p[j] = next;
+        const bool more = std::abs(next) > size[j];
+        size[j] = more ? std::abs(next) : size[j];
+        value[j] = more ? next : value[j];
+        at[j] = more ? sub_step : at[j];
+      }
     }
   }
-  return found;
 }
 
-/// The response after `at` sub-steps as a linear function of the acceleration's values: its coefficients, by the steps backwards.
-Vector row_of(Index points, const OscillatorStep& s, int subs, Index at) {
-  Vector row = Vector::Zero(points);
-  double p = 1, q = 0;  // what the response owes to p and q at the end of the sub-step
-  for (Index sub_step = at; sub_step >= 1; --sub_step) {
-    const Index point = (sub_step - 1) / subs;
-    const double end = static_cast<double>((sub_step - 1) % subs + 1) / subs, begin = end - 1.0 / subs;  // within the step
-    const double from = s.p0 * p + s.q0 * q, to = s.p1 * p + s.q1 * q;
-    row[point] += from * (1 - begin) + to * (1 - end);
-    row[point + 1] += from * begin + to * end;
-    const double before = s.pp * p + s.qp * q;
-    q = s.pq * p + s.qq * q;
-    p = before;
+/// The responses after `at` sub-steps as linear functions of the acceleration's values, times the envelope: their coefficients, by the
+/// steps backwards, as rows first, first + 1, ...
+void Oscillators::fill_rows(const Vector& envelope, Index first, Index count, Matrix& rows) {
+  for (Index j = 0; j < at_once; ++j) p[j] = q[j] = 0;      // what a response owes to p and q at the end of the sub-step
+  const double last = *std::max_element(at, at + at_once);  // before it, in these loops, none owes anything
+  Numbers left, right, carried{};                           // what it owes to the values at both ends of a step; to the right one so far
+  for (Index point = (static_cast<Index>(last) + subs - 1) / subs - 1; point >= 0; --point) {
+    for (Index j = 0; j < at_once; ++j) left[j] = 0, right[j] = carried[j];
+    for (int k = subs; k >= 1; --k) {
+      const double end = static_cast<double>(k) / subs, begin = end - 1.0 / subs;  // within the step
+      const double sub_step = static_cast<double>(point * subs + k);
+      for (Index j = 0; j < at_once; ++j) {
+        p[j] = sub_step == at[j] ? 1 : p[j];
+        const double from = p0[j] * p[j] + q0[j] * q[j], to = p1[j] * p[j] + q1[j] * q[j];
+        left[j] += from * (1 - begin) + to * (1 - end);
+        right[j] += from * begin + to * end;
+        const double before = pp[j] * p[j] + qp[j] * q[j];
+        q[j] = pq[j] * p[j] + qq[j] * q[j];
+        p[j] = before;
+      }
+    }
+    double* column = &rows(first, point + 1);
+    for (Index j = 0; j < count; ++j) column[j] = right[j] * envelope[point + 1];
+    std::copy_n(left, at_once, carried);
   }
-  return row;
+  for (Index j = 0; j < count; ++j) rows(first + j, 0) = carried[j] * envelope[0];
 }
 
 /// Velocity and displacement at the end as linear functions of the acceleration's values, which is straight between them.
@@ -62,40 +92,43 @@ Matrix rest_rows(Index points, double step) {
   return rows;
 }
 
-/// Adds what is asked of the acceleration as one row, weighted, of norm 1.
-void ask(Matrix& rows, Vector& wanted, Index number, const Vector& row, double amount) {
-  const double norm = row.norm();
-  if (norm > 0) {
-    rows.row(number) = row.transpose() / norm;
-    wanted[number] = amount / norm;
-  }
-}
-
 }  // namespace
 
 Vector spectral_change(const Vector& acceleration, const Vector& envelope, const SpectralDemand& demand, double share) {
   const auto count = static_cast<Index>(demand.frequencies.size()), points = acceleration.size();
   Matrix rows = Matrix::Zero(count + 3, points);
   Vector wanted = Vector::Zero(count + 3);
-  in_parallel(static_cast<int>(count), 0, [&](int i) {
-    const auto at = static_cast<std::size_t>(i);
-    const int subs = sub_steps(demand.frequencies[at], demand.step);
-    const OscillatorStep step = oscillator_step(demand.frequencies[at], demand.damping, demand.step / subs);
-    const Extreme reached = extreme_of(acceleration, step, subs);
-    const Vector row = row_of(points, step, subs, reached.at).cwiseProduct(envelope);
-    const bool kept = at < demand.limits && std::abs(reached.value) < demand.target[at];
-    ask(rows, wanted, i, row, kept ? 0 : std::copysign(demand.target[at], reached.value) - reached.value);
-  });
+  for (Index first = 0, together = 0; first < count; first += together) {
+    const auto frequency = [&](Index j) { return demand.frequencies[static_cast<std::size_t>(first + j)]; };
+    Oscillators oscillators;
+    oscillators.subs = sub_steps(frequency(0), demand.step);
+    for (together = 1; together < std::min(at_once, count - first) && sub_steps(frequency(together), demand.step) == oscillators.subs;)
+      ++together;
+    for (Index j = 0; j < at_once; ++j)  // places without an oscillator of their own repeat the last one
+      oscillators.set(j, oscillator_step(frequency(std::min(j, together - 1)), demand.damping, demand.step / oscillators.subs));
+    oscillators.find_extremes(acceleration);
+    oscillators.fill_rows(envelope, first, together, rows);
+    for (Index j = 0; j < together; ++j) {
+      const auto at = static_cast<std::size_t>(first + j);
+      const bool kept = at < demand.limits && oscillators.size[j] < demand.target[at];
+      wanted[first + j] = kept ? 0 : std::copysign(demand.target[at], oscillators.value[j]) - oscillators.value[j];
+    }
+  }
   if (demand.peak > 0) {
     Index at = 0;
     acceleration.cwiseAbs().maxCoeff(&at);
-    Vector row = Vector::Zero(points);
-    row[at] = envelope[at];
-    ask(rows, wanted, count, row, std::copysign(demand.peak, acceleration[at]) - acceleration[at]);
+    rows(count, at) = envelope[at];
+    wanted[count] = std::copysign(demand.peak, acceleration[at]) - acceleration[at];
   }
   const Matrix rest = rest_rows(points, demand.step);
-  for (Index k = 0; k < 2; ++k)
-    ask(rows, wanted, count + 1 + k, rest.row(k).transpose().cwiseProduct(envelope), -rest.row(k).dot(acceleration));
+  for (Index k = 0; k < 2; ++k) {
+    rows.row(count + 1 + k) = rest.row(k).cwiseProduct(envelope.transpose());
+    wanted[count + 1 + k] = -rest.row(k).dot(acceleration);
+  }
+
+  const Vector norms = rows.rowwise().norm(), weights = (norms.array() > 0).select(norms.cwiseInverse(), 0);  // rows of norm 1
+  rows = weights.asDiagonal() * rows;
+  wanted = weights.cwiseProduct(wanted);
 
   constexpr double small = 0.01;  // against rows that say nearly the same with different amounts
   Matrix products = small * Matrix::Identity(count + 3, count + 3);

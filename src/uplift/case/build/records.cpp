@@ -15,6 +15,7 @@
 #include "uplift/motion/formats/convert.h"
 #include "uplift/motion/formats/read.h"
 #include "uplift/motion/generate.h"
+#include "uplift/motion/parallel.h"
 #include "uplift/motion/processing/processing.h"
 
 namespace uplift {
@@ -95,7 +96,9 @@ std::vector<Family> families_of(const std::vector<CaseRecordSource>& records) {
 /// Of every record, empty for those from files.
 std::vector<Motion> generate_records(const std::vector<CaseRecordSource>& records) {
   std::vector<Motion> made(records.size());
-  for (const Family& family : families_of(records)) {
+  const std::vector<Family> families = families_of(records);
+  in_parallel(static_cast<int>(families.size()), 0, [&](int number) {
+    const Family& family = families[static_cast<std::size_t>(number)];
     std::vector<const TargetSpectrum*> targets;
     for (const auto& target : family.targets) targets.push_back(target.get());
     std::vector<GeneratedMotion> motions = generate_motions(targets, family.options);
@@ -105,7 +108,7 @@ std::vector<Motion> generate_records(const std::vector<CaseRecordSource>& record
                                                         percent(fit.mean_error), percent(fit.least_ratio)));
       made[family.records[k]] = std::move(motions[k].motion);
     }
-  }
+  });
   return made;
 }
 

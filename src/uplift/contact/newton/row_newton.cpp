@@ -20,6 +20,7 @@ constexpr double price_of_reference = 10;    // factors of all rows: what points
 constexpr int patience_with_candidate = 20;  // factors
 constexpr int most_updates = 50;             // of a reference, before round-off is left behind
 constexpr double negligible = 0.1;           // of what an iteration may leave: all that it takes as zero
+constexpr double near = 1e-3;                // of |z|: iterations from there on hardly add to what the directions left as round-off
 constexpr double same_slope = 1e-10;         // of a slope: a smaller difference is round-off
 
 double cubed(std::size_t rows) {
@@ -45,6 +46,7 @@ void RowNewton::begin(const InterfaceProblem& problem) {
   lu_.size(rows);
   reference_compliance_.setZero(compliance_.rows(), rows);
   valid_ = slow_ = follows_ = has_reference_ = from_reference_ = false;
+  largest_ = 0;
   candidate_age_ = updates_ = 0;
   for (Vector* v : {&force_, &opening_, &rest_, &origin_force_, &origin_opening_, &opening_step_, &force_step_, &part_, &sum_, &from_,
                     &end_, &kept_, &product_, &apart_})
@@ -55,31 +57,37 @@ void RowNewton::begin(const InterfaceProblem& problem) {
     each->reserve(static_cast<std::size_t>(rows));
   }
   share_ = compliance_.diagonal().cwiseMax(0).cwiseSqrt();
-  places_.clear();
-  Index slope = 0;
+  flexible_.setZero(rows);
+  Index slopes = 0;
   for (const Block& block : model.blocks) {
-    for (int i = 0; i < block.batch.points; ++i)
-      places_.push_back({block.first + i, block.batch.points, slope + i, block.batch.components});
-    slope += block.slopes();
+    const Index n = block.batch.points;
+    for (int c = 0; c < block.batch.components; ++c)
+      flexible_.segment(block.first, n) =
+          flexible_.segment(block.first, n).cwiseMax(compliance_.diagonal().segment(block.first + c * n, n));
+    slopes += block.slopes();
   }
-  for (Vector* v : {&none_, &reference_, &candidate_, &change_}) v->setZero(slope);
+  for (Vector* v : {&none_, &reference_, &candidate_, &change_}) v->setZero(slopes);
 }
 
 /// Largest change of a point's slopes since the factor was made, as part of what its compliance and the slopes leave together.
 double RowNewton::change_of_slopes(const Vector& slopes) const {
-  double worst = 0;
-  for (const Place& at : places_) {
-    double change = 0, size = 0, flexible = 0;
-    for (int k = 0; k < at.components * at.components; ++k) {
-      const double now = slopes[at.slope + k * at.stride], then = slopes_[at.slope + k * at.stride];
-      change = std::max(change, std::abs(now - then));
-      size = std::max(size, std::abs(then));
-    }
-    if (change == 0) continue;
-    for (int c = 0; c < at.components; ++c) flexible = std::max(flexible, compliance_(at.first + c * at.stride, at.first + c * at.stride));
-    worst = std::max(worst, change * flexible / (1 + size * flexible));
+  Lanes worst = 0;
+  Index first_slope = 0;
+  for (const Block& block : problem_->model->blocks) {
+    const Index n = block.batch.points, components = block.batch.components;
+    for_lanes(n, [&](const auto& at) {
+      Lanes change = 0, size = 0;
+      for (Index k = 0; k < components * components; ++k) {
+        const Lanes now = at(slopes.data() + first_slope + k * n), then = at(slopes_.data() + first_slope + k * n);
+        change = larger(change, absolute(now - then));
+        size = larger(size, absolute(then));
+      }
+      const Lanes flexible = at(flexible_.data() + block.first);
+      worst = larger(worst, change * flexible / (1 + size * flexible));
+    });
+    first_slope += block.slopes();
   }
-  return worst;
+  return largest(worst);
 }
 
 /// The rows whose force has other slopes than in `from`, ascending.
@@ -270,7 +278,10 @@ void RowNewton::measure() {
 /// Goes to origin + alpha step: forces, openings, laws and s.
 void RowNewton::look(double alpha, NewtonWork& work, InterfaceSolution& solution) {
   force_ = origin_force_ + alpha * force_step_;
-  opening_ = origin_opening_ + alpha * opening_step_;
+  if (anew_)
+    opening_of(force_, opening_);
+  else
+    opening_ = origin_opening_ + alpha * opening_step_;
   solution.opening = opening_;
   evaluate_laws(*problem_, {}, true, work, solution);
   rest_ = solution.force - force_;
@@ -309,23 +320,27 @@ void RowNewton::coordinates_of(const Vector& force, Vector& z) {
 }
 
 /// Whether the forces that the iteration has arrived at solve the problem: |G| = |C^T s| against the largest |z_j| (balance_scale). Without
-/// reading C the sum of sqrt(F_ii) |s_i|, which is not less than |G|, is held against |z| = sqrt(P F P) over the root of the number of
-/// coordinates, which is not more than the largest |z_j|.
+/// reading all of C, what is not less than |G| is held against what is not more than the largest |z_j|: the sum of sqrt(F_ii) |s_i|, or
+/// sqrt(s F s) with its round-off, against that coordinate which was the largest when all were known.
 bool RowNewton::is_solution(double tolerance, NewtonWork& work, InterfaceSolution& solution, Result& result) {
   look_at_forces(work, solution);
-  const double coordinates = static_cast<double>(problem_->model->factor.cols());
-  double scale = std::sqrt(std::max(0.0, force_.dot(problem_->free_opening - opening_)) / coordinates);
-  double size = share_.dot(rest_.cwiseAbs());
+  const Matrix& factor = problem_->model->factor;
+  double scale = std::abs(factor.col(largest_).dot(force_)), size = share_.dot(rest_.cwiseAbs());
+  if (!(size <= tolerance * scale)) {
+    small::multiply_symmetric(compliance_, rest_.data(), product_.data());
+    size = std::sqrt(std::max(0.0, rest_.dot(product_)) + 1e-13 * size * size);
+  }
   if (!(size <= tolerance * scale)) {
     coordinates_of(force_, solution.z);
-    work.gradient.noalias() = problem_->model->factor.transpose() * rest_;
+    solution.z.cwiseAbs().maxCoeff(&largest_);
+    work.gradient.noalias() = factor.transpose() * rest_;
     size = work.gradient.norm();
     scale = balance_scale(*problem_, work, solution);
   }
   result.residual = size / std::max(scale, 1e-300);
   result.converged = size <= tolerance * scale;
   if (!result.converged && result.residual <= 1e-9) {
-    const double noise = 8 * std::sqrt(coordinates);
+    const double noise = 8 * std::sqrt(static_cast<double>(factor.cols()));
     result.converged = size <= noise * balance_round_off(*problem_, work, solution);
   }
   return result.converged;
@@ -334,6 +349,7 @@ bool RowNewton::is_solution(double tolerance, NewtonWork& work, InterfaceSolutio
 /// Iterations until s is round-off. In the first one s belongs to the tangents of the laws at another opening.
 bool RowNewton::iterate(double tolerance, NewtonWork& work, InterfaceSolution& solution, Result& result) {
   measure();
+  bool made_anew = false;
   for (int k = 0; k < most_iterations; ++k) {
     if (!std::isfinite(size_)) return false;
     const double reference = std::sqrt(std::max(0.0, force_.dot(problem_->free_opening - opening_)));  // |z|
@@ -349,6 +365,8 @@ bool RowNewton::iterate(double tolerance, NewtonWork& work, InterfaceSolution& s
     LineSearch search(k > 0 && k < patience ? -rest_.dot(opening_step_) : 0);  // G . d = s . dg
     origin_force_ = force_;
     origin_opening_ = opening_;
+    anew_ = !made_anew && size_ <= near * reference;
+    made_anew |= anew_;
     do look(search.share(), work, solution);
     while (search.goes_on(-rest_.dot(opening_step_)));
     measure();

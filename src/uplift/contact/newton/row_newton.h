@@ -40,10 +40,6 @@ class RowNewton final : public MethodWork {
   Index order() const { return static_cast<Index>(rows_.size()); }
 
  private:
-  struct Place {                             // of a point
-    Index first = 0, stride = 0, slope = 0;  // first row, between rows; first slope, those of (a, c) (a * components + c) * stride on
-    int components = 1;
-  };
   void begin(const InterfaceProblem&);
   void guess(NewtonWork&, InterfaceSolution&);
   double change_of_slopes(const Vector& slopes) const;
@@ -68,12 +64,11 @@ class RowNewton final : public MethodWork {
   const InterfaceProblem* problem_ = nullptr;
   SeenModel seen_;
   Matrix compliance_;  // F; its columns and those of F0 fill whole registers
-  std::vector<Place> places_;
   LuInPlace lu_;
   std::vector<Index> rows_, other_rows_;  // of the factor, ascending
   std::vector<Index> bent_;               // rows where s is not zero
   Vector slopes_, change_;                // of the factor, as in NewtonWork; less those of the reference where it is one of its changes
-  bool valid_ = false, slow_ = false, follows_ = false;
+  bool valid_ = false, slow_ = false, follows_ = false, anew_ = false;
   Matrix reference_compliance_;          // F0
   Vector none_, reference_, candidate_;  // slopes: 0, k0, those of the next reference
   bool has_reference_ = false, from_reference_ = false;
@@ -82,6 +77,8 @@ class RowNewton final : public MethodWork {
   Matrix chosen_, images_;                         // work space of refer_to: columns and rows of F0
   Vector force_, opening_, rest_, moved_;          // P, g, s, F0 s and then -dg
   Vector share_;                                   // sqrt(F_ii)
+  Vector flexible_;                                // largest F_ii of a point, at its first row
+  Index largest_ = 0;                              // of the coordinates z, when they were last known
   Vector product_, apart_;                         // work space: k dg; of rows_apart
   Vector origin_force_, origin_opening_, kept_;    // where a line search begins; the guess
   Vector opening_step_, force_step_, part_, sum_;  // dg, dP; k dg
