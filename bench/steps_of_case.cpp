@@ -1,10 +1,11 @@
 // What a step of a case costs, as with a reduced model: processor time from one step to the next, with all that is recorded, of the first
-// run of the case (not of its bonded run); the first step, which makes the factors, is left out.
-// Usage: bench_steps_of_case CASE.toml ...
+// run of the case, or of its last one, the bonded run; the first step, which makes the factors, is left out.
+// Usage: bench_steps_of_case [--bonded] CASE.toml ...
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <ctime>
+#include <string_view>
 #include <vector>
 
 #include "uplift/session/steps.h"
@@ -18,9 +19,10 @@ double now() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-void measure(const char* file) {
+void measure(const char* file, bool bonded) {
   const LoadedCase loaded = load_case(file, "bench_steps_of_case");
-  BuiltCase built = build_run(loaded, runs_of_case(loaded.read).front());
+  const auto runs = runs_of_case(loaded.read);
+  BuiltCase built = build_run(loaded, bonded ? runs.back() : runs.front());
   std::vector<double> times;
   double before = 0;
   Control control;
@@ -47,5 +49,6 @@ void measure(const char* file) {
 }  // namespace uplift
 
 int main(int count, char** words) {
-  for (int k = 1; k < count; ++k) uplift::measure(words[k]);
+  const bool bonded = count > 1 && words[1] == std::string_view("--bonded");
+  for (int k = bonded ? 2 : 1; k < count; ++k) uplift::measure(words[k], bonded);
 }

@@ -186,14 +186,14 @@ TEST(Counters, NoAllocationOfYieldingSolids) {
     for (Index i = 0; i < wave.size(); ++i) wave[i] = std::sin(2.0 * static_cast<double>(i + 1));
     for (std::size_t a = 0; a < positions->size(); ++a)  // sheared
       wave[solid.dimension() * static_cast<Index>(a)] += 3 * (*positions)[a].y();
-    ASSERT_TRUE(solid.respond(wave * 1e-2, natural, old, scratch, force, nullptr).converged);
+    ASSERT_TRUE(solid.respond(wave * 1e-2, natural, old, scratch, &force, nullptr).converged);
     ASSERT_TRUE(solid.has_yielded(old));
     solid.find_inelastic(old, scratch, yielded);
     for (const double size : {0.0, 1e-6, 3e-3, 3e-2, -3e-2}) {
       const Vector displacement = size * wave;
       allocations = 0;
       counting = true;
-      const bool good = solid.respond(displacement, old, now, scratch, force, nullptr).converged;
+      const bool good = solid.respond(displacement, old, now, scratch, &force, nullptr).converged;
       solid.find_inelastic(now, scratch, yielded);
       if (cell != Cell::tet10) solid.dissipated(wave, old, displacement, now);
       counting = false;

@@ -1,5 +1,6 @@
 #include "uplift/dynamics/plastic_bulk.h"
 
+#include <algorithm>
 #include <cassert>
 
 namespace uplift {
@@ -7,35 +8,37 @@ namespace uplift {
 PlasticBulk::PlasticBulk(const Model& model) : model_(model) {
   for (const auto& element : model.elements)
     if (const int size = element->num_history(); size > 0) {
-      elements_.push_back({element.get(), history_});
-      history_ += static_cast<std::size_t>(size);
+      elements_.push_back(
+          {element.get(), history_, static_cast<std::size_t>(size), static_cast<std::size_t>(element->unknowns()), index_.size(), parts_});
+      history_ += elements_.back().size;
+      parts_ += elements_.back().unknowns + 1;
+      for (const int node : element->nodes())
+        for (int c = 0; c < element->unknowns_per_node(); ++c) index_.push_back(model.space.unknowns() * node + c);
     }
   if (any()) spread_ = model.expansion.cwiseAbs();
 }
 
-void PlasticBulk::of_element(const Element& element, const Vector& full, Vector& result) const {
-  result.resize(element.unknowns());
-  const int each = element.unknowns_per_node();
-  Index i = 0;
-  for (const int node : element.nodes())
-    for (int c = 0; c < each; ++c) result[i++] = full[model_.space.unknowns() * node + c];
+void PlasticBulk::of_element(const One& one, const Vector& full, Vector& result) const {
+  result.resize(static_cast<Index>(one.unknowns));
+  double* to = result.data();
+  for (const int place : places(one)) *to++ = full[place];
 }
 
-std::span<const double> PlasticBulk::history_of(const One& one, const std::vector<double>& all) const {
-  return std::span(all).subspan(one.first, static_cast<std::size_t>(one.element->num_history()));
+void PlasticBulk::keep_part(const One& one, PlasticState& state) const {
+  double* part = state.parts.data() + one.first_part;
+  std::copy_n(scratch_.inelastic.force.data(), one.unknowns, part);
+  part[one.unknowns] = scratch_.inelastic.energy;
 }
 
-void PlasticBulk::clear(PlasticState& state) const {
+void PlasticBulk::add_parts(PlasticState& state) const {
   state.full.setZero(model_.full_unknowns());
   state.energy = 0;
-}
-
-void PlasticBulk::add_inelastic(const Element& element, PlasticState& state) const {
-  const int each = element.unknowns_per_node();
-  Index i = 0;
-  for (const int node : element.nodes())
-    for (int c = 0; c < each; ++c) state.full[model_.space.unknowns() * node + c] += scratch_.inelastic.force[i++];
-  state.energy += scratch_.inelastic.energy;
+  const double* part = state.parts.data();
+  for (const One& one : elements_) {
+    for (const int place : places(one)) state.full[place] += *part++;
+    state.energy += *part++;
+  }
+  state.force = model_.expansion * state.full;
 }
 
 PlasticState PlasticBulk::state(std::vector<double> history) const {
@@ -43,40 +46,42 @@ PlasticState PlasticBulk::state(std::vector<double> history) const {
   made.history = std::move(history);
   if (made.history.empty()) made.history.assign(history_, 0.0);
   assert(made.history.size() == history_);
-  clear(made);
+  made.parts.assign(parts_, 0.0);
   for (const One& one : elements_) {
     const auto history_of_one = history_of(one, made.history);
     if (!one.element->has_yielded(history_of_one)) continue;
     one.element->find_inelastic(history_of_one, scratch_.element, scratch_.inelastic);
-    add_inelastic(*one.element, made);
+    keep_part(one, made);
   }
-  made.force = model_.expansion * made.full;
+  add_parts(made);
   return made;
 }
 
-BulkResponse PlasticBulk::respond(const Vector& displacement, const Update& step, PlasticState& now, Vector& size) const {
+BulkResponse PlasticBulk::respond(const Vector& displacement, const Update& step, PlasticState& now, Vector* size) const {
   const Vector full = model_.full(displacement, 0, step.at);
   scratch_.element.duration = step.duration;
   Vector& sizes = scratch_.sizes;
-  sizes.setZero(full.size());
+  if (size) sizes.setZero(full.size());
   now.history.resize(history_);
-  clear(now);
+  now.parts.resize(parts_);
+  std::copy(step.old.parts.begin(), step.old.parts.end(), now.parts.begin());
   for (const One& one : elements_) {
-    of_element(*one.element, full, scratch_.displacement);
-    const auto history = std::span(now.history).subspan(one.first, static_cast<std::size_t>(one.element->num_history()));
+    of_element(one, full, scratch_.displacement);
+    const auto before = history_of(one, step.old.history);
+    const auto history = std::span(now.history).subspan(one.first, one.size);
     BulkResponse response =
-        one.element->respond(scratch_.displacement, history_of(one, step.old), history, scratch_.element, scratch_.force, nullptr);
+        one.element->respond(scratch_.displacement, before, history, scratch_.element, size ? &scratch_.force : nullptr, nullptr);
     if (!response.converged) return response;
-    const int each = one.element->unknowns_per_node();
-    Index i = 0;
-    for (const int node : one.element->nodes())
-      for (int c = 0; c < each; ++c) sizes[model_.space.unknowns() * node + c] += std::abs(scratch_.force[i++]);
-    if (!one.element->has_yielded(history)) continue;
+    if (size) {
+      const double* force = scratch_.force.data();
+      for (const int place : places(one)) sizes[place] += std::abs(*force++);
+    }
+    if (!one.element->yields(before, history)) continue;  // its part is that of the beginning
     one.element->find_inelastic_of_response(history, scratch_.element, scratch_.inelastic);
-    add_inelastic(*one.element, now);
+    keep_part(one, now);
   }
-  now.force = model_.expansion * now.full;
-  size = spread_ * sizes;
+  add_parts(now);
+  if (size) *size = spread_ * sizes;
   return {};
 }
 
@@ -89,22 +94,19 @@ Sparse PlasticBulk::softening(const Vector& displacement, const Update& step, co
   std::vector<double> unused;
   Matrix tangent, elastic;
   for (const One& one : elements_) {
-    const auto before = history_of(one, step.old);
+    const auto before = history_of(one, step.old.history);
     unused.assign(before.begin(), before.end());
-    of_element(*one.element, full, scratch_.displacement);
+    of_element(one, full, scratch_.displacement);
     if (one.element->yields(before, history_of(one, now.history)) &&
-        one.element->respond(scratch_.displacement, before, unused, scratch_.element, scratch_.force, &tangent).converged) {
+        one.element->respond(scratch_.displacement, before, unused, scratch_.element, nullptr, &tangent).converged) {
       one.element->form({&elastic, nullptr, nullptr});
       whole = whole && (tangent - tangent.transpose()).norm() <= round_off * elastic.norm();
       tangent = (0.5 * (tangent + tangent.transpose()) - elastic).eval();
     } else {
       tangent.setZero(one.element->unknowns(), one.element->unknowns());  // so that all tangents have their entries in the same places
     }
-    const auto nodes = one.element->nodes();
-    const int each = one.element->unknowns_per_node();
-    const auto unknown = [&](Index i) {
-      return model_.space.unknowns() * nodes[static_cast<std::size_t>(i / each)] + static_cast<int>(i % each);
-    };
+    const auto place = places(one);
+    const auto unknown = [&](Index i) { return place[static_cast<std::size_t>(i)]; };
     for (Index j = 0; j < tangent.cols(); ++j)
       for (Index i = 0; i < tangent.rows(); ++i) entries.emplace_back(unknown(i), unknown(j), tangent(i, j));
   }
@@ -125,8 +127,8 @@ double PlasticBulk::dissipated(const Vector& from, MotionInstant before, const P
   for (const One& one : elements_) {
     const auto was = history_of(one, old.history), is = history_of(one, now.history);
     if (!one.element->yields(was, is)) continue;
-    of_element(*one.element, u0, from_element);
-    of_element(*one.element, u1, to_element);
+    of_element(one, u0, from_element);
+    of_element(one, u1, to_element);
     sum += one.element->dissipated(from_element, was, to_element, is);
   }
   return sum;

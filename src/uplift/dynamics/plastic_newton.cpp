@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::size_t mixing_depth = 5;
 constexpr int patience = 5;
+/// From such a residual on, sizes of forces are those of the step.
+constexpr double near_balance = 0.1;
 
 }  // namespace
 
@@ -67,8 +69,7 @@ PlasticNewton::~PlasticNewton() = default;
 /// Goes over to the tangent of the present state. A tangent that is not positive definite (no associated flow, or no strength left) gets a
 /// share of the elastic stiffness back.
 bool PlasticNewton::soften(const Step& step, const Make& make, const Vector& increment, const PlasticState& now) {
-  const Sparse full =
-      step.weight * bulk_.softening(step.start.displacement + increment, {step.old.history, step.at, step.duration}, now, whole_);
+  const Sparse full = step.weight * bulk_.softening(step.start.displacement + increment, {step.old, step.at, step.duration}, now, whole_);
   std::string why;
   for (const double share : {1.0, 0.9, 0.5}) {
     const Sparse softening = share * full;
@@ -148,8 +149,7 @@ bool PlasticNewton::expect_flow(const Step& step, const Make& make, Vector& incr
   if (!(step.share > 0) || !(flow_share_ > 0)) return false;
   increment = step.share / flow_share_ * flow_;
   moved_ = step.start.displacement + increment;
-  return bulk_.respond(moved_, {step.old.history, step.at, step.duration}, now, size_).converged &&
-         begin_newton(step, make, increment, now);
+  return bulk_.respond(moved_, {step.old, step.at, step.duration}, now, &size_).converged && begin_newton(step, make, increment, now);
 }
 
 void PlasticNewton::remember_flow(const Step& step, const Vector& increment) {
@@ -160,6 +160,7 @@ void PlasticNewton::remember_flow(const Step& step, const Vector& increment) {
 Outcome PlasticNewton::solve(const Step& step, StepSolver& elastic, const Make& make, Vector& increment, PlasticState& now) {
   const auto begin = [&] {
     last_ = &elastic;
+    now.history = step.old.history;  // so that a step does not depend on those before it
     softening_.resize(0, 0);
     residuals_.clear();
     search_.reset();
@@ -197,7 +198,9 @@ Outcome PlasticNewton::iterate(const Step& step, const Make& make, Vector& incre
     }
     moved_ = step.start.displacement + increment;
     if (!moved_.allFinite()) break;
-    if (const BulkResponse response = bulk_.respond(moved_, {step.old.history, step.at, step.duration}, now, size_); !response.converged) {
+    const bool sized = !residuals_.empty() && residuals_.back() < near_balance;
+    if (const BulkResponse response = bulk_.respond(moved_, {step.old, step.at, step.duration}, now, sized ? nullptr : &size_);
+        !response.converged) {
       if (shorten_search()) continue;
       outcome.why = response.why;
       return outcome;

@@ -31,7 +31,11 @@ Stepper::Level& Stepper::make_level(int halving) {
     made.solver = make_monolithic(matrix_of(made), b_, gap_, std::move(frame));
     ++linear_.factorisations;
   } else {
-    auto factor = std::make_shared<const BulkFactor>(upper_of(made), &b_, bulk_.small, solver_, model_, linear_);
+    // Yielding solids halve steps often. The matrices of all lengths have their entries in the same places: one symbolic analysis serves
+    // them. Other models may share their factors with other runs (linear/lockstep.h), which the solver does for itself.
+    const StepSolver* whole = newton_ != nullptr && halving > 0 && levels_.front() != nullptr ? levels_.front()->solver.get() : nullptr;
+    auto factor = std::make_shared<const BulkFactor>(upper_of(made), &b_, bulk_.small, solver_, model_, linear_,
+                                                     whole != nullptr ? whole->factor() : nullptr);
     if (!factor->ok()) {
       made.why = factor->why();
       made.hopeless = factor->too_large();

@@ -4,6 +4,10 @@
 
 namespace uplift {
 
+bool BulkLaw::stays_elastic(const BulkTrial&) const {
+  return false;
+}
+
 double BulkLaw::locked_energy(const double*) const {
   return 0;
 }

@@ -24,6 +24,13 @@ struct BulkPoints {
   double duration = 0;             // of the step [s]; 0 in a static stage
 };
 
+/// Stresses that the points of one element would have if their memory stayed: a component of all points after another.
+struct BulkTrial {
+  const double* stress;  // Pa: component c of point p at [c * stride + p]; zero from `points` on
+  int stride, points;    // stride: whole vector registers (math/lanes.h)
+  const double* old;     // memory, as in BulkPoints
+};
+
 /// How an update ended; not converged: the step is to be cut.
 struct BulkResponse {
   bool converged = true;
@@ -49,6 +56,9 @@ class BulkLaw {
   virtual int num_history() const = 0;
   /// Updates all points; implicit (end of step). A step in which e does not change must leave e as it was, bit by bit.
   virtual BulkResponse respond(const BulkPoints& points) const = 0;
+  /// A short way for elements in which nothing happens: true where `respond` would leave the memory of all points as it is. False is always
+  /// right; `respond` then decides.
+  virtual bool stays_elastic(const BulkTrial& trial) const;
   /// Energy [J/m3] that a point stores besides the recoverable energy (strain - e).D (strain - e)/2. It depends on the memory alone.
   virtual double locked_energy(const double* history) const;
   /// What the memory says in field files: names and units, and one value for each of them.

@@ -33,7 +33,7 @@ Cell Element::cell() const {
 
 // Elements with memory override these; others are not asked.
 
-BulkResponse Element::respond(const Vector&, std::span<const double>, std::span<double>, ElementScratch&, Vector&, Matrix*) const {
+BulkResponse Element::respond(const Vector&, std::span<const double>, std::span<double>, ElementScratch&, Vector*, Matrix*) const {
   assert(!"an element with memory responds");
   return {};
 }

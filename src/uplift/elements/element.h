@@ -85,10 +85,10 @@ class Element {
   // ---- memory ----
   /// Numbers that the element remembers, all zero in the natural state; 0: it is linear, and nothing below is asked.
   virtual int num_history() const { return 0; }
-  /// Internal force [N] and consistent tangent [N/m] (null: not wanted) for nodal displacements [m], from the memory of the last accepted
-  /// state; fills `now`.
+  /// Internal force [N] and consistent tangent [N/m] (each null: not wanted) for nodal displacements [m], from the memory of the last
+  /// accepted state; fills `now`. Where `now` has yielded from `old`, as after an update nearby, an iteration may begin there.
   virtual BulkResponse respond(const Vector& displacement, std::span<const double> old, std::span<double> now, ElementScratch& scratch,
-                               Vector& force, Matrix* tangent) const;
+                               Vector* force, Matrix* tangent) const;
   /// Whether the memory holds inelastic strains; whether they differ between two memories.
   virtual bool has_yielded(std::span<const double> history) const;
   virtual bool yields(std::span<const double> old, std::span<const double> now) const;

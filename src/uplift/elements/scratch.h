@@ -13,6 +13,7 @@ struct ElementScratch {
   std::vector<Strain> strain;
   std::vector<Stress> stress;
   std::vector<Mat6> tangent;
+  std::vector<double> trial;  // stresses if no memory changes, component after component
   // of the incompatible modes
   Vector mode_force;  // N: zero when the modes are in balance
   Matrix mode_stiffness;

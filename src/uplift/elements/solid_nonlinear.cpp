@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "uplift/math/dense.h"
+#include "uplift/math/lanes.h"
 #include "uplift/math/line_search.h"
 #include "uplift/math/small.h"
 
@@ -21,6 +22,7 @@ constexpr double least_elastic_share = 1e-9;
 constexpr int most_kept_points = 8;
 
 constexpr std::size_t most_amplitudes = 9;
+constexpr int width = static_cast<int>(lanes);
 
 /// To the round-off of tangents. n x n.
 bool is_symmetric(int n, const double* a) {
@@ -63,15 +65,12 @@ NonlinearSolid::NonlinearSolid(Cell cell, std::span<const int> nodes, Coordinate
       law_(std::move(law)),
       size_(law_->num_history()),
       points_(num_points()),
-      modes_(num_modes()) {
+      modes_(num_modes()),
+      side_by_side_(points_ > 1 ? (points_ + width - 1) / width * width : 1) {
   assert(dimension() == 3 || section.plane == PlaneState::strain);
   Scratch elastic;
   find_gradients(elastic.gradient);
-  if (points_ <= most_kept_points)
-    for (const PointGradient& at : elastic.gradient) {
-      gradient_.push_back(at.volume);
-      for (int i = 0; i < dimension(); ++i) gradient_.insert(gradient_.end(), at.g[i], at.g[i] + this->nodes().size() + modes_);
-    }
+  if (points_ <= most_kept_points) keep_gradients(elastic.gradient);
   if (modes_ == 0) return;
   elastic.tangent.assign(elastic.gradient.size(), law_->elastic());
   const Matrix k = full_tangent(elastic, 0);
@@ -79,11 +78,24 @@ NonlinearSolid::NonlinearSolid(Cell cell, std::span<const int> nodes, Coordinate
   modes_of_nodes_ = -mode_flexibility_ * k.bottomLeftCorner(num_amplitudes(), unknowns());
 }
 
+void NonlinearSolid::keep_gradients(const std::vector<PointGradient>& all) {
+  const int functions = static_cast<int>(nodes().size()) + modes_;
+  gradient_.assign(static_cast<std::size_t>((1 + dimension() * functions) * side_by_side_), 0.0);
+  for (int p = 0; p < points_; ++p) {
+    const PointGradient& at = all[static_cast<std::size_t>(p)];
+    double* kept = gradient_.data() + p;
+    *kept = at.volume;
+    for (int i = 0; i < dimension(); ++i)
+      for (int a = 0; a < functions; ++a) *(kept += side_by_side_) = at.g[i][a];
+  }
+}
+
 void NonlinearSolid::recall_gradient(int point, PointGradient& at) const {
-  const int d = dimension(), functions = static_cast<int>(nodes().size()) + modes_;
-  const double* kept = gradient_.data() + static_cast<std::ptrdiff_t>(point) * (1 + d * functions);
-  at.volume = *kept++;
-  for (int i = 0; i < d; ++i, kept += functions) std::copy_n(kept, functions, at.g[i]);
+  const int functions = static_cast<int>(nodes().size()) + modes_;
+  const double* kept = gradient_.data() + point;
+  at.volume = *kept;
+  for (int i = 0; i < dimension(); ++i)
+    for (int a = 0; a < functions; ++a) at.g[i][a] = *(kept += side_by_side_);
 }
 
 void NonlinearSolid::recall_gradients(std::vector<PointGradient>& all) const {
@@ -199,26 +211,37 @@ BulkResponse NonlinearSolid::balance_modes(const Vector& displacement, std::span
 }
 
 BulkResponse NonlinearSolid::respond(const Vector& displacement, std::span<const double> old, std::span<double> now, Scratch& scratch,
-                                     Vector& force, Matrix* tangent) const {
+                                     Vector* force, Matrix* tangent) const {
   assert(displacement.size() == unknowns());
   assert(static_cast<int>(old.size()) == num_history() && static_cast<int>(now.size()) == num_history());
-  // where the update before changed the memory this one will, and its modes need the tangents
-  const bool tangents = tangent != nullptr || (modes_ > 0 && yields(old, now));
+  // where the update before changed the memory this one will: its modes need the tangents, and begin where that one has ended
+  const bool again = modes_ > 0 && yields(old, now);
+  std::array<double, most_amplitudes> last;
+  if (again) std::copy_n(now.begin() + first_amplitude(), num_amplitudes(), last.begin());
+  const bool side_by_side = !gradient_.empty() && points_ > 1;
+  if (side_by_side && stays_elastic(displacement, old, now, scratch, force) && tangent == nullptr) {
+    std::copy_n(old.begin(), first_amplitude(), now.begin());
+    return {};
+  }
+  const bool tangents = tangent != nullptr || again;
   recall_gradients(scratch.gradient);
   scratch.strain.resize(scratch.gradient.size());
   scratch.stress.resize(scratch.gradient.size());
   scratch.tangent.resize(scratch.gradient.size());
-  if (modes_ > 0) {
+  if (modes_ > 0 && !side_by_side) {
     // not a Map: what Eigen's lazy product rounds depends on where the memory begins
     small::multiply_any(modes_of_nodes_, displacement.data(), now.data() + first_amplitude());
     if (has_yielded(old)) add_inelastic_amplitudes(old, scratch, now.data() + first_amplitude());
   }
+  if (again) std::copy_n(last.begin(), num_amplitudes(), now.begin() + first_amplitude());
   BulkResponse outcome = evaluate(displacement, old, now, tangents, scratch);
-  if (outcome.converged && modes_ > 0 && yields(old, now)) outcome = balance_modes(displacement, old, now, tangents, scratch);
+  if (outcome.converged && modes_ > 0 && (again || yields(old, now))) outcome = balance_modes(displacement, old, now, tangents, scratch);
 
-  force.setZero(unknowns());
-  for (std::size_t p = 0; p < scratch.gradient.size(); ++p)
-    add_force(scratch.gradient[p], dimension(), 0, static_cast<int>(nodes().size()), scratch.stress[p], force.data());
+  if (force) {
+    force->setZero(unknowns());
+    for (std::size_t p = 0; p < scratch.gradient.size(); ++p)
+      add_force(scratch.gradient[p], dimension(), 0, static_cast<int>(nodes().size()), scratch.stress[p], force->data());
+  }
   if (!tangent) return outcome;
   const Matrix k = full_tangent(scratch, least_elastic_share);
   const Index keep = unknowns(), modes = k.rows() - keep;

@@ -22,7 +22,7 @@ class NonlinearSolid : public Solid {
 
   using Scratch = ElementScratch;
   int num_history() const override;
-  BulkResponse respond(const Vector& displacement, std::span<const double> old, std::span<double> now, Scratch& scratch, Vector& force,
+  BulkResponse respond(const Vector& displacement, std::span<const double> old, std::span<double> now, Scratch& scratch, Vector* force,
                        Matrix* tangent) const override;
   bool has_yielded(std::span<const double> history) const override;
   bool yields(std::span<const double> old, std::span<const double> now) const override;
@@ -42,9 +42,15 @@ class NonlinearSolid : public Solid {
   const BulkLaw& law() const { return *law_; }
 
  private:
+  void keep_gradients(const std::vector<PointGradient>& all);
   /// The gradients of the points: those kept, or computed where none are.
   void recall_gradients(std::vector<PointGradient>& all) const;
   void recall_gradient(int point, PointGradient& at) const;
+  /// For a law that can tell, with kept gradients. Fills the amplitudes in any case, `force` (null: not wanted) for an answer of true only.
+  bool stays_elastic(const Vector& displacement, std::span<const double> old, std::span<double> now, Scratch& scratch, Vector* force) const;
+  template <int dim>
+  bool stays_elastic_in(const double* displacement, std::span<const double> old, std::span<double> now, Scratch& scratch,
+                        double* force) const;
   Strain strain(const PointGradient& at, const Vector& displacement, const double* amplitudes) const;
   BulkResponse evaluate(const Vector& displacement, std::span<const double> old, std::span<double> now, bool tangents,
                         Scratch& scratch) const;
@@ -71,8 +77,10 @@ class NonlinearSolid : public Solid {
 
   std::shared_ptr<const BulkLaw> law_;
   int size_, points_, modes_;  // size_: numbers that a point remembers
-  // Of each point: volume, then the gradients of nodes and modes in each direction. Empty for second-order cells, which have many of both.
+  // The volumes of all points, then their gradients: of a direction and a function (nodes, then modes), of all points side by side. Filled
+  // up with zeros to `side_by_side_` points. Empty for second-order cells, which have many of both.
   std::vector<double> gradient_;
+  int side_by_side_;
   Matrix modes_of_nodes_;    // amplitudes of the elastic element for nodal displacements: -K_aa^-1 K_au
   Matrix mode_flexibility_;  // m/N: K_aa^-1 of the elastic element
 };

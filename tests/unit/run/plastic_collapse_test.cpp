@@ -140,7 +140,7 @@ TEST(PlasticCollapse, IncompatibleModesBalanceFarBeyondYield) {
         const double size = std::pow(10, std::uniform_real_distribution<double>(-3, -1)(random));
         for (double& x : u) x = size * std::uniform_real_distribution<double>(-1, 1)(random);
         std::vector<double> now = natural;
-        const BulkResponse response = solid.respond(u, natural, now, scratch, force, nullptr);
+        const BulkResponse response = solid.respond(u, natural, now, scratch, &force, nullptr);
         ASSERT_TRUE(response.converged) << kind.name << ' ' << size << ": " << response.why;
         if (!solid.yields(natural, now)) continue;
         ++yielded;

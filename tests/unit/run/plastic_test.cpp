@@ -308,8 +308,8 @@ TEST(PlasticSolid, YieldedForceAndEnergyAreWhatTheLinearSolidLacks) {
     for (int draw = 0; draw < 20 && !(solid.has_yielded(old) && solid.yields(old, now)); ++draw) {  // one that yields twice
       for (double& x : u0) x = uniform(random);
       for (double& x : u1) x = 3 * uniform(random);
-      ASSERT_TRUE(solid.respond(u0, natural, old, scratch, f0, nullptr).converged);
-      ASSERT_TRUE(solid.respond(u1, old, now, scratch, f1, nullptr).converged);
+      ASSERT_TRUE(solid.respond(u0, natural, old, scratch, &f0, nullptr).converged);
+      ASSERT_TRUE(solid.respond(u1, old, now, scratch, &f1, nullptr).converged);
     }
     ASSERT_TRUE(solid.yields(old, now)) << kind.name;
     EXPECT_FALSE(solid.has_yielded(natural));

@@ -9,6 +9,8 @@
 #include <limits>
 #include <numbers>
 
+#include "uplift/math/lanes.h"
+
 namespace uplift {
 
 namespace {
@@ -126,11 +128,12 @@ double DruckerPrager::return_to_cone(const Trial& trial, double gamma, Stress& s
   if (tangent) {
     const double a = 1 / (shear + bulk * eta_ * eta_bar_ + xi_ * xi_ * parameters_.hardening);
     const Stress n = trial.deviator / (std::numbers::sqrt2 * trial.root_j2), one = unit();
-    Mat6 deviatoric = -one * one.transpose() / 3;
-    deviatoric.diagonal() += Stress(1, 1, 1, 0.5, 0.5, 0.5);
-    *tangent = 2 * shear * keep * deviatoric + 2 * shear * (1 - keep - shear * a) * n * n.transpose() -
-               std::numbers::sqrt2 * shear * a * bulk * (eta_ * n * one.transpose() + eta_bar_ * one * n.transpose()) +
-               bulk * (1 - bulk * eta_ * eta_bar_ * a) * one * one.transpose();
+    const double mixed = std::numbers::sqrt2 * shear * a * bulk;
+    const Stress of_n = 2 * shear * (1 - keep - shear * a) * n - mixed * eta_ * one;
+    const Stress of_one = (bulk * (1 - bulk * eta_ * eta_bar_ * a) - 2 * shear * keep / 3) * one - mixed * eta_bar_ * n;
+    tangent->noalias() = n * of_n.transpose();
+    tangent->noalias() += one * of_one.transpose();
+    tangent->diagonal() += shear * keep * Stress(2, 2, 2, 1, 1, 1);
   }
   return trial.accumulated + xi_ * gamma;
 }
@@ -156,6 +159,24 @@ BulkResponse DruckerPrager::respond(const BulkPoints& points) const {
                                points.tangent != nullptr ? points.tangent + p : nullptr);
   }
   return {};
+}
+
+// yield() without the root, for the points side by side
+bool DruckerPrager::stays_elastic(const BulkTrial& trial) const {
+  for (int first = 0; first < trial.stride; first += static_cast<int>(lanes)) {
+    const WholeLanes at{first};
+    Lanes s[6];
+    for (int c = 0; c < 6; ++c) s[c] = at(trial.stress + c * trial.stride);
+    alignas(64) double strength[lanes];
+    for (int k = 0; k < lanes; ++k)
+      strength[k] =
+          xi_ * (parameters_.cohesion + (first + k < trial.points ? parameters_.hardening * trial.old[history_size * (first + k) + 6] : 0));
+    const Lanes p = (s[0] + s[1] + s[2]) / 3, bound = WholeLanes{0}(strength)-eta_ * p;
+    for (int c = 0; c < 3; ++c) s[c] -= p;
+    const Lanes j2 = (s[0] * s[0] + s[1] * s[1] + s[2] * s[2]) / 2 + s[3] * s[3] + s[4] * s[4] + s[5] * s[5];
+    if (!std::experimental::all_of(bound >= 0 && j2 <= bound * bound)) return false;
+  }
+  return true;
 }
 
 std::span<const BulkOutput> DruckerPrager::outputs() const {

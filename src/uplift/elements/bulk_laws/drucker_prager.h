@@ -39,6 +39,7 @@ class DruckerPrager final : public BulkLaw {
   const DruckerPragerParameters& parameters() const { return parameters_; }
   int num_history() const override { return history_size; }
   BulkResponse respond(const BulkPoints& points) const override;
+  bool stays_elastic(const BulkTrial& trial) const override;
   std::span<const BulkOutput> outputs() const override;
   void find_outputs(const double* history, double* values) const override;
 
