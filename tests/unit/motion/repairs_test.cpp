@@ -182,6 +182,50 @@ TEST(RecordRepairs, TimesThatBeginLater) {
   EXPECT_EQ(motion.repairs, Texts{"its times begin at 5 s; they are counted from there"});
 }
 
+TEST(RecordRepairs, TimesBeforeZero) {
+  // without heads the first column is that of the times because its steps are equal, also where a record begins ahead of its trigger
+  std::string rows, uneven;
+  for (int i = 0; i < 25; ++i) {
+    rows += fmt::format("{:.2f} {}\n", -0.1 + 0.01 * i, 3 * i - 7);
+    uneven += fmt::format("{:.2f} {}\n", -0.1 + 0.01 * i + (i == 3 ? 0.006 : 0), 3 * i - 7);
+  }
+  for (const RecordOptions& options : {RecordOptions{.unit = "cm/s2"}, RecordOptions{.unit = "cm/s2", .step = 0.01}}) {
+    const Motion motion = one(rows, options);
+    ASSERT_EQ(motion.values.size(), 25u);
+    EXPECT_DOUBLE_EQ(motion.step, 0.01);
+    for (std::size_t i = 0; i < 25; ++i) EXPECT_NEAR(motion.values[i], 0.03 * static_cast<double>(i) - 0.07, 1e-12);
+    EXPECT_EQ(motion.repairs, Texts{"its times begin at -0.1 s; they are counted from there"});
+  }
+  EXPECT_EQ(refusal(uneven, {.unit = "cm/s2"}), "file:1: expected two columns: times at equal steps, and values, found \"-0.10 -7\"");
+}
+
+TEST(RecordRepairs, LastNumberThatLostItsExponent) {
+  // "4.6E" and "4.6" are no 4.6 where 4.6E-03 was written: the point is left out, not read a thousand times too large
+  std::vector<double> values;
+  for (int i = 0; i < 40; ++i) values.push_back(0.001 + 0.0001 * i);
+  const Written written = peer(values, "NPTS= 40, DT= .01 SEC");
+  for (const std::size_t lost : {2, 3, 4, 5, 6, 9}) {
+    const Motion cut = one(written.text.substr(0, written.text.size() - lost));
+    ASSERT_EQ(cut.values.size(), 39u) << lost;
+    for (std::size_t i = 0; i < 39; ++i) EXPECT_NEAR(cut.values[i], values[i] * 9.80665, 1e-9);
+    EXPECT_EQ(cut.repairs.size(), 2u);
+    EXPECT_TRUE(cut.repairs[0].starts_with("the end of the file cut off its last number, \"4.9")) << cut.repairs[0];
+    EXPECT_EQ(cut.repairs[1], "line 4 announces 40 points, the file has 39: read with 39");
+  }
+  // without a blank before a minus
+  std::string glued = peer({}, "NPTS= 16, DT= .01 SEC").text;
+  for (int i = 0; i < 8; ++i) glued += "-.1000000E-01-.2000000E-01\n";
+  const Motion without = one(glued.substr(0, glued.size() - 4)), whole = one(glued.substr(0, glued.size() - 1));
+  EXPECT_EQ(without.values.size(), 15u);
+  EXPECT_NEAR(without.values.back(), -0.0980665, 1e-12);
+  EXPECT_EQ(whole.values.size(), 16u);
+  EXPECT_NEAR(whole.values.back(), -0.196133, 1e-12);
+  // numbers of every form: nothing tells that the last one is not whole
+  std::string free_form = "# step = 0.01 s; unit = m/s2\n";
+  for (int i = 0; i < 8; ++i) free_form += i % 2 == 0 ? "1e-05\n" : "0.25\n";
+  EXPECT_EQ(one(free_form + "0.125").values.back(), 0.125);
+}
+
 TEST(RecordRepairs, WhatLooksOdd) {
   EXPECT_EQ(one(replaced(ramp(sound), "2.5000000E-02", "3.4170500E+02")).repairs,
             Texts{"the largest acceleration is 3351 m/s2, more than was ever recorded: is the unit g right?"});

@@ -21,7 +21,8 @@ double time_factor(const Columns::Head& head) {
   return named && unit.empty() ? 1 : 0;
 }
 
-/// Whether the first cells of the first rows are times: not negative, ascending by equal steps, by those that the file or the user states.
+/// Whether the first cells of the first rows are times: ascending by equal steps, by those that the file or the user states. Times before
+/// zero, of a record that begins ahead of its trigger, could be values of a motion: there no step of five may differ.
 bool begins_with_times(const RecordText& text, const Columns& columns, std::optional<double> stated) {
   std::vector<double> first;
   for (int i = columns.first_row; i <= text.count() && first.size() < 20; ++i) {
@@ -34,14 +35,16 @@ bool begins_with_times(const RecordText& text, const Columns& columns, std::opti
     if (!time) return false;
     first.push_back(*time);
   }
-  if (first.size() < 2 || first.front() < 0) return false;
+  const bool before_zero = !first.empty() && first.front() < 0;
+  if (first.size() < (before_zero ? 6 : 2)) return false;
   if (stated && std::abs(first[1] - first[0] - *stated) > 0.3 * *stated) return false;
   int even = 0;
   for (std::size_t i = 1; i < first.size(); ++i) {
     if (!(first[i] > first[i - 1])) return false;
     even += std::abs(first[i] - first[i - 1] - (first[1] - first[0])) < 0.3 * (first[1] - first[0]);
   }
-  return 2 * even >= static_cast<int>(first.size()) - 1;  // a gap among them is for equal_steps to tell
+  const int steps = static_cast<int>(first.size()) - 1;
+  return before_zero ? even == steps : 2 * even >= steps;  // a gap among them is for equal_steps to tell
 }
 
 struct Layout {

@@ -27,6 +27,8 @@ class RecordText {
   const std::vector<std::string>& repairs() const { return repairs_; }
 
  private:
+  bool leave_out_cut_number();
+
   std::string file_, text_;
   std::vector<std::pair<std::size_t, std::size_t>> lines_;  // begin, length
   std::vector<std::string> repairs_;

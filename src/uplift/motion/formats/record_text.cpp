@@ -66,6 +66,26 @@ Word word_of(std::string_view text) {
   return {number.length, small ? std::optional(0.0) : std::nullopt};
 }
 
+/// "E-03" at the end of a line, empty when its last number has no such exponent.
+std::string_view last_exponent(std::string_view line) {
+  line = trim(line);
+  const std::size_t letter = line.find_last_of("eEdD");
+  if (letter == line.npos || letter + 2 >= line.size() || (line[letter + 1] != '-' && line[letter + 1] != '+')) return {};
+  return line.find_first_not_of("0123456789", letter + 2) == line.npos ? line.substr(letter) : std::string_view();
+}
+
+/// Where the last number of a line begins when its exponent of `length` characters was cut off; npos when it is whole.
+std::size_t cut_number(std::string_view line, std::size_t length) {
+  const std::size_t end = line.find_last_not_of(" \t");
+  if (end == line.npos || (line[end] != '.' && line[end] != '-' && line[end] != '+' && !is_word(line[end]))) return line.npos;
+  if (last_exponent(line).size() >= length) return line.npos;
+  const std::size_t separator = line.find_last_of(" \t,;", end), word = separator == line.npos ? 0 : separator + 1;
+  // old files leave no blank before a minus: the number before this one ends with its exponent
+  for (std::size_t i = end + 1; i-- > word + length;)
+    if (last_exponent(line.substr(word, i - word)).size() == length) return i;
+  return word;
+}
+
 }  // namespace
 
 RecordText::RecordText(std::string_view text, std::string file) : file_(std::move(file)) {
@@ -94,8 +114,23 @@ RecordText::RecordText(std::string_view text, std::string file) : file_(std::mov
     begin = feed ? next + 1 : std::max(next, end + 1);
   }
   if (unix_ends + dos_ends + mac_ends > 1) repairs_.emplace_back("line ends of different systems are mixed; each was taken as one");
-  if (!text_.empty() && text_.back() != '\n' && text_.back() != '\r')
+  if (!text_.empty() && text_.back() != '\n' && text_.back() != '\r' && !leave_out_cut_number())
     repairs_.emplace_back("the last line has no end; it was taken as complete");
+}
+
+/// "4.6434E" or "4.6434" at the end of a file whose numbers end as in "4.6434E-03": without its exponent it would be a thousand times
+/// too large. The lines above tell how the exponents are written.
+bool RecordText::leave_out_cut_number() {
+  constexpr int lines_above = 5;
+  if (count() <= lines_above) return false;
+  const std::size_t length = last_exponent(line(count() - 1)).size();
+  for (int i = count() - lines_above; i < count(); ++i)
+    if (length == 0 || last_exponent(line(i)).size() != length) return false;
+  const std::size_t cut = cut_number(line(count()), length);
+  if (cut == std::string_view::npos) return false;
+  repairs_.push_back("the end of the file cut off its last number, " + in_quotes(trim(line(count()).substr(cut))) + ": left out");
+  lines_.back().second = cut;
+  return true;
 }
 
 std::string_view RecordText::line(int number) const {
