@@ -9,7 +9,7 @@ from support import *
 class New(CliTest):
     def test_a_new_case_passes_check_and_runs(self):
         done = self.uplift("new", "my tower")
-        self.assertIn("my tower/case.toml written; next: uplift check \"my tower\"", done.stdout)
+        self.assertIn("my tower/case.toml written; next: uplift check 'my tower'", done.stdout)
         text = (self.folder / "my tower" / "case.toml").read_text()
         self.assertGreater(sum("#" in line for line in text.splitlines()), 15)
         self.assertIn("in order", self.uplift("check", "my tower").stdout)
@@ -18,6 +18,23 @@ class New(CliTest):
         self.uplift("compare", "my tower/case.toml", "-o", "c")
         results = {run["name"]: run["agreement"]["result"] for run in self.summary("c")["runs"] if run["name"] != "bonded"}
         self.assertEqual(results, {"sdm": "agrees", "springs": "agrees"})
+
+    def test_a_new_study_names_what_drives_the_case(self):
+        self.uplift("new", "my tower")
+        done = self.uplift("study", "new", "my tower")
+        self.assertIn("my tower.study/plan.toml written; next: uplift study check 'my tower.study'", done.stdout)
+        said = self.uplift("study", "check", "my tower.study", expect=2).stderr  # a gust drives the new case, no motion of the ground
+        self.assertIn('expected the name of a function or record that drives the case, which none does, found "quake"', said)
+        shaken = (self.folder / "my tower" / "case.toml").read_text()
+        gust, after = shaken.index("[[load]]"), shaken.index("# An earthquake instead of the gust")
+        ground = '[[ground_acceleration]]\ndirection = [1, 0]\namplitude = "2 m/s2"\nfunction = "pulse"\n\n'
+        (self.folder / "shaken").mkdir()
+        (self.folder / "shaken" / "case.toml").write_text(shaken[:gust] + ground + shaken[after:])
+        self.uplift("study", "new", "shaken")
+        plan = self.folder / "shaken.study" / "plan.toml"
+        self.assertIn('replace = ["pulse"]', plan.read_text())
+        plan.write_text(plan.read_text().replace("count = 20", "count = 1").replace("duration = 20", "duration = 5"))
+        self.uplift("study", "check", "shaken.study")
 
     def test_names_that_lead_nowhere(self):
         self.assertIn("expected the name of a folder, found an empty one", self.uplift("new", "", expect=2).stderr)

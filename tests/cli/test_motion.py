@@ -81,6 +81,12 @@ class Records(CliTest):
         done = self.uplift("motion", "quake.csv", "quake.csv", "--json")
         self.assertEqual([each["name"] for each in json.loads(done.stdout)["motions"]], ["quake", "quake (2)"])
 
+    def test_a_name_with_blanks_is_that_of_the_folder(self):
+        for name in ("quake of May", "quake of June"):
+            self.write(RECORD, f"{name}.csv")
+            self.uplift("motion", f"{name}.csv")
+        self.assertEqual(sorted(each.name for each in (self.folder / "out").iterdir()), ["motion_quake of June", "motion_quake of May"])
+
     def test_what_is_wrong_is_refused(self):
         self.write(RECORD, "quake.csv")
         for words, part in (

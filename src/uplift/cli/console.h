@@ -16,6 +16,8 @@ void print_text(std::string_view text);
 void finish_output();
 /// One line on standard error. When that cannot be written, nobody can be told.
 void complain(std::string_view line);
+/// A word as a shell takes it: in quotes where it needs them.
+std::string in_shell(const std::string& word);
 /// True when standard error is a terminal that can redraw a line.
 bool on_terminal();
 

@@ -171,8 +171,9 @@ Provenance provenance_of(const MotionOptions& given, const Options& options, con
 
 std::string folder_of(const MotionOptions& given, const Options& options) {
   if (!options.out.empty()) return options.out;
-  std::string name = given.generate.empty() ? fs::path(given.files.front()).stem().string() : given.generate.front();
-  return "out/motion_" + name.substr(0, name.find(' '));
+  if (given.generate.empty()) return "out/motion_" + fs::path(given.files.front()).stem().string();
+  const std::string& target = given.generate.front();  // "rg_1_60 pga=3"
+  return "out/motion_" + target.substr(0, target.find(' '));
 }
 
 void print(const MotionReport& report) {

@@ -142,8 +142,7 @@ int new_case(const std::string& name) {
   } catch (const fs::filesystem_error& refusal) {
     throw OutputError(fmt::format("{}: cannot write the file: {}", file.string(), refusal.code().message()));
   }
-  const char* quote = name.find(' ') == std::string::npos ? "" : "\"";
-  say(fmt::format("{} written; next: uplift check {}{}{}", file.string(), quote, folder.string(), quote));
+  say(fmt::format("{} written; next: uplift check {}", file.string(), in_shell(folder.string())));
   return Exit::done;
 }
 

@@ -197,15 +197,6 @@ int export_tables(const Options& options, const std::string& id) {
   return Exit::done;
 }
 
-/// A word of a shell.
-std::string in_shell(const std::string& word) {
-  constexpr std::string_view plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./+:@%=,-";
-  if (word.find_first_not_of(plain) == std::string::npos) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
-}
-
 int tasks(const Options& options, int count) {
   const Study study = open_study(options.file);
   const auto shards = std::min(static_cast<std::size_t>(count), study_curves(study.of).size());

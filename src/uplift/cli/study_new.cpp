@@ -1,12 +1,16 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "uplift/base/error.h"
 #include "uplift/base/file.h"
+#include "uplift/base/text.h"
+#include "uplift/case/build/records.h"
 #include "uplift/cli/console.h"
 #include "uplift/cli/study.h"
 #include "uplift/io/files.h"
+#include "uplift/session/load.h"
 
 namespace uplift::cli {
 namespace {
@@ -29,9 +33,9 @@ largest = 3
 
 [[motions]]                           # generated for a target spectrum; or files = ["a.at2", "b.at2"] instead of count and generate
 name = "m"
-replace = ["quake"]                   # the record or function of the case that they take the place of
+replace = [{2}]                   # the record or function of the case that they take the place of
 count = 20
-generate = [{{ target = {{ type = "rg_1_60", pga = "0.3 g_n" }}, duration = 20, seed = 1 }}]
+generate = [{3}]
 
 [[limit]]                             # a limit state; runs that overturn or separate exceed every one
 name = "uplift of 30 mm"
@@ -61,6 +65,20 @@ source = "judgement"
 timeout = "10 min"                    # of one run
 )TOML";
 
+constexpr const char* generated = R"({ target = { type = "rg_1_60", pga = "0.3 g_n" }, duration = 20, seed = 1 })";
+
+/// The functions and records that drive a case, each once; one called "quake" where there is no case yet, or none that can be read.
+std::vector<std::string> driving(const std::filesystem::path& case_file) {
+  std::vector<std::string> names;
+  try {
+    for (const DrivenBy& each : motions_wanted(load_case(case_file.string(), "study new").read))
+      if (std::ranges::find(names, each.function.name) == names.end()) names.push_back(each.function.name);
+  } catch (const InputError&) {
+    names.clear();  // `study check` says what is wrong with it
+  }
+  return names.empty() ? std::vector<std::string>{"quake"} : names;
+}
+
 }  // namespace
 
 int new_study(const std::string& name) {
@@ -73,12 +91,17 @@ int new_study(const std::string& name) {
   if (fs::exists(file, error)) throw InputError({file.string(), 0}, "", "the name of a new study", "a study that exists already");
   fs::create_directories(folder, error);
   if (error) throw InputError({folder.string(), 0}, "", "a folder that can be created", error.message());
+  std::string replaced, components;
+  for (const std::string& each : driving(folder.parent_path() / folder.stem() / "case.toml")) {
+    replaced += (replaced.empty() ? "" : ", ") + in_quotes(each);
+    components += (components.empty() ? "" : ", ") + std::string(generated);
+  }
   try {
-    write_file_atomically(file, fmt::format(study_template, folder.string(), folder.stem().string()));
+    write_file_atomically(file, fmt::format(study_template, in_shell(folder.string()), folder.stem().string(), replaced, components));
   } catch (const fs::filesystem_error& failed) {
     throw OutputError(failed.what());
   }
-  say(fmt::format("{0} written; next: uplift study check {1}", file.string(), folder.string()));
+  say(fmt::format("{0} written; next: uplift study check {1}", file.string(), in_shell(folder.string())));
   return Exit::done;
 }
 

@@ -90,7 +90,8 @@ ResultFolder::ResultFolder(const std::string& path) : path_(resolved(path)) {
   for (int number = 1;; ++number) {
     work_ = fmt::format("{}{}{}{}", path_, part_suffix, getpid(), number > 1 ? fmt::format("-{}", number) : "");
     if (mkdir(work_.c_str(), 0777) == 0) return;
-    if (errno != EEXIST) refuse(path_, "a folder that can be made for the results", std::strerror(errno));
+    // why the folder above could not be made says more than that it is not there
+    if (errno != EEXIST) refuse(path_, "a folder that can be made for the results", error ? error.message() : std::strerror(errno));
   }
 }
 

@@ -1,12 +1,17 @@
 // Behaviours of a shared library with the generic interface of MFront, written by hand (tests/mfront_behaviours.c): closed forms, the same
 // law of the program, refusals.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <random>
 
 #include "data_support.h"
 #include "text_support.h"
+#include "uplift/base/file.h"
 #include "uplift/elements/bulk_laws/drucker_prager.h"
 #include "uplift/io/text/toml.h"
 
@@ -216,6 +221,14 @@ TEST(Mfront, RefusesALibraryThatDoesNotFit) {
                  {"case.toml:3: law.library", "a shared library", "no file", "did you mean", "mfront_behaviours.c"});
   expect_refusal(refused_library("mfront_behaviours.c"), {"case.toml:3: law.library", "a shared library", "invalid ELF header"});
   expect_refusal(refused_library("/dev/zero"), {"\"/dev/zero\", which is no regular file"});
+  // a copy that ended early: the loader would map it, and the process would be killed
+  const std::filesystem::path cut = std::filesystem::temp_directory_path() / fmt::format("cut_{}.so", ::getpid());
+  const std::string whole = read_file(UPLIFT_MFRONT_LIBRARY);
+  for (const std::size_t bytes : {whole.size() - 1, whole.size() / 2}) {
+    std::ofstream(cut, std::ios::binary) << whole.substr(0, bytes);
+    expect_refusal(refused_library(cut.string()), {"case.toml:3: law.library", "a shared library", "whose end is missing"});
+  }
+  std::filesystem::remove(cut);
 }
 
 TEST(Mfront, RefusesABehaviourThatDoesNotFit) {

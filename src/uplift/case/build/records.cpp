@@ -156,8 +156,9 @@ void check_motion(const Case& read, const CaseOtherMotion& motion) {
   for (std::size_t i = 0; i < by.size(); ++i) {
     known.find(by[i], motion.where("by"), motion.path("by"));
     if (std::ranges::find(drives, replaced[i]) == drives.end())
-      fail(motion, "replace", "the name of a function or record that drives the case", in_quotes(replaced[i]),
-           nearest_name(replaced[i], drives));
+      fail(motion, "replace",
+           "the name of a function or record that drives the case, " + (drives.empty() ? std::string("which none does") : listed(drives)),
+           in_quotes(replaced[i]), nearest_name(replaced[i], drives));
     if (std::ranges::count(replaced, replaced[i]) > 1) fail(motion, "replace", "every name once", in_quotes(replaced[i]) + " again");
   }
 }

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <set>
 
@@ -26,9 +28,25 @@ std::vector<std::string> behaviours_of(const std::filesystem::path& path) {
   return {names.begin(), names.end()};
 }
 
+/// Whether the end of a library of 64 bits is missing, as after an interrupted copy: the loader maps it all the same, and the process is
+/// killed at the first access. The table of sections stands at its end (ELF-64: place at byte 40, size and number of entries at 58).
+bool is_cut(const std::filesystem::path& path) {
+  const std::string content = read_file(path);
+  constexpr std::size_t head = 64;
+  if (content.size() < head || !content.starts_with("\177ELF\2")) return false;  // dlopen says what is wrong
+  std::uint64_t sections = 0;
+  std::uint16_t size = 0, count = 0;
+  std::memcpy(&sections, content.data() + 40, sizeof sections);
+  std::memcpy(&size, content.data() + 58, sizeof size);
+  std::memcpy(&count, content.data() + 60, sizeof count);
+  const std::uint64_t table = std::uint64_t{size} * count;
+  return sections > content.size() || table > content.size() - sections;
+}
+
 std::shared_ptr<void> open_library(const Values& law, const std::filesystem::path& path) {
   constexpr char wanted[] = "a shared library made by MFront";
   require_file(path, law.where("library"), law.path("library"), wanted);
+  if (is_cut(path)) fail(law, "library", wanted, in_quotes(law.text("library")) + ", whose end is missing");
   void* handle = ::dlopen(std::filesystem::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr) fail(law, "library", wanted, ::dlerror());
   return {handle, [](void* opened) { ::dlclose(opened); }};
