@@ -18,10 +18,11 @@ namespace {
 
 constexpr double steps_a_period = 20, highest_of_structure = 50;                // Hz
 constexpr double steps_a_period_of_vibration = 16, highest_of_vibration = 300;  // Hz
-constexpr double steps_a_period_of_bounces = 8, highest_of_bounces = 1000;  // Hz: faster impacts take less than a twentieth of the window
+constexpr double steps_a_period_of_bounces = 16, highest_of_bounces = 1000;  // Hz: faster impacts take less than a twentieth of the window
+constexpr double steps_a_period_of_lips = 8;
 constexpr double steps_a_period_of_floors = 40, highest_of_floors = 33;     // Hz: above, the spectrum of an earthquake is that of the peak
 constexpr double least_width_of_peaks = 0.005;                              // damping ratios of a mode and of the equipment together
-constexpr double more_for_constraints = 2;
+constexpr double more_for_constraints = 3;
 constexpr double accepted_difference = 0.01, least_step = 1e-5, most_step = 0.1;
 
 /// What the joints of a structure ask of the steps a period.
@@ -61,7 +62,7 @@ void bound_by_bounces(const std::vector<ResolvedMode>& moving, const ImpactDeman
   for (const ResolvedMode& mode : moving) highest = std::max(highest, mode.frequency);
   if (highest < highest_of_vibration) return;
   const double resolved = std::min(highest, highest_of_bounces), steps = demand.more * steps_a_period_of_bounces;
-  const std::string count = demand.more > 1 ? fmt::format("{:.0f}", steps) : "eight";
+  const std::string count = demand.more > 1 ? fmt::format("{:.0f}", steps) : "sixteen";
   const std::string reason =
       highest > resolved ? fmt::format("{} steps a period of {}: the bounce on the closed joint has {}", count,
                                        format_quantity(resolved, "Hz"), format_quantity(highest, "Hz"))
@@ -210,7 +211,7 @@ void bound_by_lips(const BuiltCase& built, std::vector<StepBound>& bounds) {
   }
   if (!(highest > 0)) return;
   const double resolved = std::min(highest, highest_of_bounces);
-  bounds.push_back({1 / (steps_a_period_of_bounces * resolved),
+  bounds.push_back({1 / (steps_a_period_of_lips * resolved),
                     fmt::format("eight steps a period of {}: the faces of the joint at a floor vibrate on it with {}",
                                 format_quantity(resolved, "Hz"), format_quantity(highest, "Hz"))});
 }
