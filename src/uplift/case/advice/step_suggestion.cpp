@@ -19,9 +19,8 @@ namespace {
 constexpr double steps_a_period = 20, highest_of_structure = 50;                // Hz
 constexpr double steps_a_period_of_vibration = 16, highest_of_vibration = 300;  // Hz
 constexpr double steps_a_period_of_bounces = 16, highest_of_bounces = 1000;  // Hz: faster impacts take less than a twentieth of the window
-constexpr double steps_a_period_of_lips = 8;
-constexpr double steps_a_period_of_floors = 40, highest_of_floors = 33;  // Hz: above, the spectrum of an earthquake is that of the peak
-constexpr double least_width_of_peaks = 0.005;                           // damping ratios of a mode and of the equipment together
+constexpr double steps_a_period_of_floors = 40, highest_of_floors = 33;      // Hz: above, the spectrum of an earthquake is that of the peak
+constexpr double least_width_of_peaks = 0.005;                               // damping ratios of a mode and of the equipment together
 constexpr double more_for_constraints = 3;
 constexpr double accepted_difference = 0.01, least_step = 1e-5, most_step = 0.1;
 
@@ -211,8 +210,8 @@ void bound_by_lips(const BuiltCase& built, std::vector<StepBound>& bounds) {
   }
   if (!(highest > 0)) return;
   const double resolved = std::min(highest, highest_of_bounces);
-  bounds.push_back({1 / (steps_a_period_of_lips * resolved),
-                    fmt::format("eight steps a period of {}: the faces of the joint at a floor vibrate on it with {}",
+  bounds.push_back({1 / (steps_a_period_of_bounces * resolved),
+                    fmt::format("sixteen steps a period of {}: the faces of the joint at a floor vibrate on it with {}",
                                 format_quantity(resolved, "Hz"), format_quantity(highest, "Hz"))});
 }
 
