@@ -24,7 +24,7 @@ class New(CliTest):
         done = self.uplift("study", "new", "my tower")
         self.assertIn("my tower.study/plan.toml written; next: uplift study check 'my tower.study'", done.stdout)
         said = self.uplift("study", "check", "my tower.study", expect=2).stderr  # a gust drives the new case, no motion of the ground
-        self.assertIn('expected the name of a function or record that drives the case, which none does, found "quake"', said)
+        self.assertIn('of a ground acceleration, prescribed motion or incident wave, of which the case has none, found "quake"', said)
         shaken = (self.folder / "my tower" / "case.toml").read_text()
         gust, after = shaken.index("[[load]]"), shaken.index("# An earthquake instead of the gust")
         ground = '[[ground_acceleration]]\ndirection = [1, 0]\namplitude = "2 m/s2"\nfunction = "pulse"\n\n'

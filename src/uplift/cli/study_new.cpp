@@ -19,7 +19,7 @@ constexpr const char* study_template =
     R"TOML(# A study for uplift: one case under many motions, at many intensities. `uplift describe section study` explains every key.
 #     uplift study check {0}; uplift study run {0}; uplift study report {0}
 # Files are relative to this plan. Numbers may carry units; a bare number is SI.
-case = "../{1}/case.toml"
+case = {1}
 seed = 1                              # of the samples of [[variable]]
 
 [intensity]                           # every intensity below and in the results is in `unit`
@@ -67,7 +67,8 @@ timeout = "10 min"                    # of one run
 
 constexpr const char* generated = R"({ target = { type = "rg_1_60", pga = "0.3 g_n" }, duration = 20, seed = 1 })";
 
-/// The functions and records that drive a case, each once; one called "quake" where there is no case yet, or none that can be read.
+/// The functions and records that drive a case, each once; one called "quake" where no ground acceleration, prescribed motion or
+/// incident wave has one, or there is no case that can be read.
 std::vector<std::string> driving(const std::filesystem::path& case_file) {
   std::vector<std::string> names;
   try {
@@ -93,11 +94,12 @@ int new_study(const std::string& name) {
   if (error) throw InputError({folder.string(), 0}, "", "a folder that can be created", error.message());
   std::string replaced, components;
   for (const std::string& each : driving(folder.parent_path() / folder.stem() / "case.toml")) {
-    replaced += (replaced.empty() ? "" : ", ") + in_quotes(each);
+    replaced += (replaced.empty() ? "" : ", ") + escaped(each);
     components += (components.empty() ? "" : ", ") + std::string(generated);
   }
   try {
-    write_file_atomically(file, fmt::format(study_template, in_shell(folder.string()), folder.stem().string(), replaced, components));
+    write_file_atomically(file, fmt::format(study_template, in_shell(folder.string()),
+                                            escaped("../" + folder.stem().string() + "/case.toml"), replaced, components));
   } catch (const fs::filesystem_error& failed) {
     throw OutputError(failed.what());
   }

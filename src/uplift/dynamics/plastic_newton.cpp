@@ -201,6 +201,7 @@ Outcome PlasticNewton::iterate(const Step& step, const Make& make, Vector& incre
     const bool sized = !residuals_.empty() && residuals_.back() < near_balance;
     if (const BulkResponse response = bulk_.respond(moved_, {step.old, step.at, step.duration}, now, sized ? nullptr : &size_);
         !response.converged) {
+      now.history = step.old.history;  // the next update begins anew, not where this one has failed
       if (shorten_search()) continue;
       outcome.why = response.why;
       return outcome;

@@ -59,7 +59,8 @@ class BulkLaw {
   /// A short way for elements in which nothing happens: true where `respond` would leave the memory of all points as it is. False is always
   /// right; `respond` then decides.
   virtual bool stays_elastic(const BulkTrial& trial) const;
-  /// Energy [J/m3] that a point stores besides the recoverable energy (strain - e).D (strain - e)/2. It depends on the memory alone.
+  /// Energy [J/m3] that a point stores besides the recoverable energy (strain - e).D (strain - e)/2. It depends on the memory alone, and
+  /// changes only where e does.
   virtual double locked_energy(const double* history) const;
   /// What the memory says in field files: names and units, and one value for each of them.
   virtual std::span<const BulkOutput> outputs() const { return {}; }

@@ -233,9 +233,16 @@ BulkResponse NonlinearSolid::respond(const Vector& displacement, std::span<const
     small::multiply_any(modes_of_nodes_, displacement.data(), now.data() + first_amplitude());
     if (has_yielded(old)) add_inelastic_amplitudes(old, scratch, now.data() + first_amplitude());
   }
-  if (again) std::copy_n(last.begin(), num_amplitudes(), now.begin() + first_amplitude());
-  BulkResponse outcome = evaluate(displacement, old, now, tangents, scratch);
-  if (outcome.converged && modes_ > 0 && (again || yields(old, now))) outcome = balance_modes(displacement, old, now, tangents, scratch);
+  std::array<double, most_amplitudes> elastic;
+  std::copy_n(now.begin() + first_amplitude(), num_amplitudes(), elastic.begin());
+  const auto update_from = [&](const std::array<double, most_amplitudes>& amplitudes) {
+    std::copy_n(amplitudes.begin(), num_amplitudes(), now.begin() + first_amplitude());
+    const BulkResponse response = evaluate(displacement, old, now, tangents, scratch);
+    const bool balance = response.converged && modes_ > 0 && (again || yields(old, now));
+    return balance ? balance_modes(displacement, old, now, tangents, scratch) : response;
+  };
+  BulkResponse outcome = update_from(again ? last : elastic);
+  if (!outcome.converged && again) outcome = update_from(elastic);
 
   if (force) {
     force->setZero(unknowns());

@@ -46,7 +46,8 @@ class NonlinearSolid : public Solid {
   /// The gradients of the points: those kept, or computed where none are.
   void recall_gradients(std::vector<PointGradient>& all) const;
   void recall_gradient(int point, PointGradient& at) const;
-  /// For a law that can tell, with kept gradients. Fills the amplitudes in any case, `force` (null: not wanted) for an answer of true only.
+  /// With kept gradients; false for a law that cannot tell. Fills the amplitudes in any case, `force` (null: not wanted) for an answer of
+  /// true only.
   bool stays_elastic(const Vector& displacement, std::span<const double> old, std::span<double> now, Scratch& scratch, Vector* force) const;
   template <int dim>
   bool stays_elastic_in(const double* displacement, std::span<const double> old, std::span<double> now, Scratch& scratch,

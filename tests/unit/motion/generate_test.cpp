@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
+#include <new>
 #include <numbers>
 
 #include "unit/motion/target_support.h"
+#include "uplift/motion/parallel.h"
 #include "uplift/motion/spectrum.h"
 
 namespace uplift::generate_test {
@@ -247,6 +250,18 @@ TEST(GenerateOptions, ContradictionsAreRefused) {
   refused({{"from", target_raw(10.0)}, {"to", target_raw(12.0)}});
   refused({{"envelope", target_raw("saragoni_hart")}, {"fall", target_raw(7.0)}});
   refused({{"duration", target_raw(1000.0)}, {"step", target_raw(1e-4)}});
+}
+
+TEST(InParallel, AnExceptionOfAnyThreadIsThrownWhereTheWorkWasAsked) {
+  for (const int threads : {1, 2, 4})
+    EXPECT_THROW(in_parallel(8, threads,
+                             [](int i) {
+                               if (i % 2 == 1) throw std::bad_alloc();
+                             }),
+                 std::bad_alloc);
+  std::atomic<int> sum = 0;
+  in_parallel(8, 4, [&](int i) { sum += i; });
+  EXPECT_EQ(sum, 28);
 }
 
 }  // namespace

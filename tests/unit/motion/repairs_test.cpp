@@ -224,6 +224,23 @@ TEST(RecordRepairs, LastNumberThatLostItsExponent) {
   std::string free_form = "# step = 0.01 s; unit = m/s2\n";
   for (int i = 0; i < 8; ++i) free_form += i % 2 == 0 ? "1e-05\n" : "0.25\n";
   EXPECT_EQ(one(free_form + "0.125").values.back(), 0.125);
+  // more digits than the numbers above have is no part of such a number, and the point of a table goes with its whole row
+  std::string tail = "# step = 0.01 s; unit = m/s2\n", table;
+  for (int i = 0; i < 8; ++i) tail += fmt::format("{}.{}e-05\n", i, i + 1), table += fmt::format("{:.2f} {}.{}E-06\n", 0.01 * i, i, i + 1);
+  EXPECT_EQ(one(tail + "0.000123").values.back(), 0.000123);
+  EXPECT_EQ(one(tail + "8.9").values.size(), 8u);
+  EXPECT_EQ(one(tail + "# 9 numbers").values.size(), 8u);
+  EXPECT_EQ(one(tail + "# 9 numbers").repairs, Texts{"the last line has no end; it was taken as complete"});
+  EXPECT_NE(refusal(tail + "END").find("found \"END\""), std::string::npos) << refusal(tail + "END");
+  for (const std::string last : {"0.08 8", "0.08 8.9E", "0.08 8.9E-0", "0.08,8.9"}) {
+    std::string rows = table;
+    if (last.find(',') != last.npos) std::ranges::replace(rows, ' ', ',');
+    const Motion cut = one(rows + last, {.unit = "cm/s2"});
+    ASSERT_GE(cut.values.size(), 8u) << last;
+    EXPECT_LE(cut.values.size(), 9u) << last;
+    for (std::size_t i = 0; i < cut.values.size(); ++i)
+      EXPECT_NEAR(cut.values[i], i < 8 ? 1e-8 * (static_cast<double>(i) + 0.1 * (static_cast<double>(i) + 1)) : 0, 1e-16) << last;
+  }
 }
 
 TEST(RecordRepairs, WhatLooksOdd) {

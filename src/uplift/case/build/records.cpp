@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <thread>
 #include <tuple>
 
 #include "uplift/base/file.h"
@@ -93,11 +94,20 @@ std::vector<Family> families_of(const std::vector<CaseRecordSource>& records) {
   return families;
 }
 
+/// As many as there are cores, unless their frequencies by points take too much memory (2.3 kB a point as measured).
+int families_at_a_time(const std::vector<Family>& families) {
+  constexpr double bytes_of_point = 2300, most_bytes = 1e9;
+  double points = 1;
+  for (const Family& family : families) points = std::max(points, family.options.duration / family.options.step);
+  const int cores = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
+  return static_cast<int>(std::clamp(most_bytes / (bytes_of_point * points), 1.0, static_cast<double>(cores)));
+}
+
 /// Of every record, empty for those from files.
 std::vector<Motion> generate_records(const std::vector<CaseRecordSource>& records) {
   std::vector<Motion> made(records.size());
   const std::vector<Family> families = families_of(records);
-  in_parallel(static_cast<int>(families.size()), 0, [&](int number) {
+  in_parallel(static_cast<int>(families.size()), families_at_a_time(families), [&](int number) {
     const Family& family = families[static_cast<std::size_t>(number)];
     std::vector<const TargetSpectrum*> targets;
     for (const auto& target : family.targets) targets.push_back(target.get());
@@ -157,7 +167,8 @@ void check_motion(const Case& read, const CaseOtherMotion& motion) {
     known.find(by[i], motion.where("by"), motion.path("by"));
     if (std::ranges::find(drives, replaced[i]) == drives.end())
       fail(motion, "replace",
-           "the name of a function or record that drives the case, " + (drives.empty() ? std::string("which none does") : listed(drives)),
+           "the name of a function or record of a ground acceleration, prescribed motion or incident wave, " +
+               (drives.empty() ? std::string("of which the case has none") : listed(drives)),
            in_quotes(replaced[i]), nearest_name(replaced[i], drives));
     if (std::ranges::count(replaced, replaced[i]) > 1) fail(motion, "replace", "every name once", in_quotes(replaced[i]) + " again");
   }

@@ -22,7 +22,7 @@ double time_factor(const Columns::Head& head) {
 }
 
 /// Whether the first cells of the first rows are times: ascending by equal steps, by those that the file or the user states. Times before
-/// zero, of a record that begins ahead of its trigger, could be values of a motion: there no step of five may differ.
+/// zero, of a record that begins ahead of its trigger, could be values of a motion: there no step may differ, and there are five at least.
 bool begins_with_times(const RecordText& text, const Columns& columns, std::optional<double> stated) {
   std::vector<double> first;
   for (int i = columns.first_row; i <= text.count() && first.size() < 20; ++i) {
@@ -110,6 +110,7 @@ Rows rows_of(const RecordText& text, const Columns& columns, const Layout& layou
   for (int i = columns.first_row; i <= text.count(); ++i) {
     if (trim(text.line(i)).empty() || is_comment(text.line(i))) continue;
     const std::vector<std::string_view> cells = cells_of(columns, text.line(i));
+    if (i == text.cut_line() && cells.size() < columns.width) break;
     if (cells.size() != columns.width)
       throw InputError(text.where(i), "", fmt::format("{} numbers, as in line {}", columns.width, columns.first_row),
                        fmt::format("{}", cells.size()));

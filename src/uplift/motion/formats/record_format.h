@@ -25,10 +25,13 @@ class RecordText {
   std::size_t bytes() const { return text_.size(); }
   /// What was mended on this level.
   const std::vector<std::string>& repairs() const { return repairs_; }
+  /// The line whose last number was left out because the end of the file cut it off; 0: none.
+  int cut_line() const { return cut_line_; }
 
  private:
   bool leave_out_cut_number();
 
+  int cut_line_ = 0;
   std::string file_, text_;
   std::vector<std::pair<std::size_t, std::size_t>> lines_;  // begin, length
   std::vector<std::string> repairs_;

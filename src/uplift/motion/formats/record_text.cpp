@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "uplift/base/text.h"
+#include "uplift/motion/formats/column_reader.h"
 #include "uplift/motion/formats/record_format.h"
 
 namespace uplift {
@@ -74,16 +75,25 @@ std::string_view last_exponent(std::string_view line) {
   return line.find_first_not_of("0123456789", letter + 2) == line.npos ? line.substr(letter) : std::string_view();
 }
 
-/// Where the last number of a line begins when its exponent of `length` characters was cut off; npos when it is whole.
-std::size_t cut_number(std::string_view line, std::size_t length) {
-  const std::size_t end = line.find_last_not_of(" \t");
-  if (end == line.npos || (line[end] != '.' && line[end] != '-' && line[end] != '+' && !is_word(line[end]))) return line.npos;
-  if (last_exponent(line).size() >= length) return line.npos;
+/// Digits behind the point of the last number of a line, 0 without a point.
+std::size_t last_decimals(std::string_view line) {
+  line = trim(line);
+  const std::size_t end = line.size() - last_exponent(line).size(), point = line.substr(0, end).find_last_not_of("0123456789");
+  return point == line.npos || line[point] != '.' ? 0 : end - point - 1;
+}
+
+/// Where the last number of a line begins when its exponent, as long as in the line `above`, was cut off; npos when it is whole, or no
+/// number.
+std::size_t cut_number(std::string_view line, std::string_view above) {
+  const std::size_t end = line.find_last_not_of(" \t"), length = last_exponent(above).size();
+  if (end == line.npos || last_exponent(line).size() >= length) return line.npos;
   const std::size_t separator = line.find_last_of(" \t,;", end), word = separator == line.npos ? 0 : separator + 1;
   // old files leave no blank before a minus: the number before this one ends with its exponent
   for (std::size_t i = end + 1; i-- > word + length;)
     if (last_exponent(line.substr(word, i - word)).size() == length) return i;
-  return word;
+  const std::string_view rest = line.substr(word, end + 1 - word);
+  const bool number = rest.find_first_not_of("0123456789.+-eEdD") == rest.npos && rest.find_first_of("0123456789") != rest.npos;
+  return number && last_decimals(rest) <= last_decimals(above) ? word : line.npos;
 }
 
 }  // namespace
@@ -122,12 +132,14 @@ RecordText::RecordText(std::string_view text, std::string file) : file_(std::mov
 /// too large. The lines above tell how the exponents are written.
 bool RecordText::leave_out_cut_number() {
   constexpr int lines_above = 5;
-  if (count() <= lines_above) return false;
-  const std::size_t length = last_exponent(line(count() - 1)).size();
+  if (count() <= lines_above || is_comment(line(count()))) return false;
+  const std::string_view above = line(count() - 1);
+  const std::size_t length = last_exponent(above).size();
   for (int i = count() - lines_above; i < count(); ++i)
-    if (length == 0 || last_exponent(line(i)).size() != length) return false;
-  const std::size_t cut = cut_number(line(count()), length);
+    if (length == 0 || last_exponent(line(i)).size() != length || last_decimals(line(i)) != last_decimals(above)) return false;
+  const std::size_t cut = cut_number(line(count()), above);
   if (cut == std::string_view::npos) return false;
+  cut_line_ = count();
   repairs_.push_back("the end of the file cut off its last number, " + in_quotes(trim(line(count()).substr(cut))) + ": left out");
   lines_.back().second = cut;
   return true;
