@@ -188,7 +188,8 @@ TEST_F(MotionCase, RefusesNamesThatDriveNothing) {
   says("by = [\"strong\"]", "by = [\"storng\"]",
        "compare.motion[1].by: expected the name of a function or record, found \"storng\" (did you mean \"strong\"?)");
   says("replace = [\"ex\"]", "replace = [\"strong\"]",
-       "compare.motion[1].replace: expected the name of a function or record that drives the case, ex or ey, found \"strong\"");
+       "compare.motion[1].replace: expected the name of a function or record of a ground acceleration, prescribed motion or incident wave, "
+       "ex or ey, found \"strong\"");
   says("name = \"two\"", "name = \"to/\"",
        "compare.motion[1].name: expected letters, digits, '_', '-' and '.' (it names files; `label` may be anything), found \"to/\"");
 }
