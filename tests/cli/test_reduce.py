@@ -85,6 +85,11 @@ class Reduce(CliTest):
         self.uplift("reduce", "case.toml", "--size", "400", "--controls", "1", "-o", "case.rom")
         reduced = self.make_study("reduced_model = \"case.rom\"\n" + MOVES, "reduced")
         self.assertIn("In 1 control runs", self.uplift("study", "check", reduced).stderr)
+        for name, begins_once in ((reduced, True), (whole, False)):  # four runs of one sample; those of the whole study are done
+            found = json.loads(self.uplift("study", "check", name, "--json").stdout)
+            before, missing = found["seconds_before_a_sample"], found["runs"] - found["done"]
+            self.assertEqual((before > 0, missing), (begins_once, 4 if begins_once else 0))
+            self.assertAlmostEqual(found["seconds_on_one_core"], missing * found["seconds_of_a_run"] + before, delta=1e-6 + 1e-3 * before)
         self.assertIn("reduced model case.rom", self.uplift("study", "run", reduced).stdout)
         of_whole, of_reduced = (json.loads((self.folder / name / "study.json").read_text()) for name in (whole, reduced))
         self.assertEqual(of_whole["provenance"]["reduced_model"], "")

@@ -59,12 +59,16 @@ std::vector<std::string> warnings_of(const Study& study, const BuiltCase& built,
   return said;
 }
 
-/// What a study will take, from one run.
+/// What a study will take, from its first runs.
 struct Forecast {
   StudyStatus status;
   double seconds = 0, memory = 0, line = 0;  // s of a run; bytes of a worker; bytes of a run's results
-  std::size_t together = 1;                  // runs of a worker that march in lockstep
-  double left() const { return seconds * static_cast<double>(status.expected - status.runs); }
+  double before = 0;                         // s before the first run of a sample with a reduced model, for all its motions
+  std::size_t samples = 1, together = 1;     // runs of a worker that march in lockstep
+  double left() const {
+    const auto missing = static_cast<double>(status.expected - status.runs);
+    return seconds * missing + before * std::min(missing, static_cast<double>(samples));
+  }
   double disk() const { return line * static_cast<double>(status.expected); }
 };
 
@@ -72,6 +76,7 @@ std::string json_of(const Forecast& forecast, const std::vector<std::string>& wa
   JsonWriter json(0, 2);
   json.begin_object().member("runs", static_cast<long>(forecast.status.expected)).member("done", static_cast<long>(forecast.status.runs));
   json.member("seconds_of_a_run", forecast.seconds)
+      .member("seconds_before_a_sample", forecast.before)
       .member("seconds_on_one_core", forecast.left())
       .member("bytes_of_memory", forecast.memory)
       .member("runs_in_lockstep", static_cast<long>(forecast.together));
@@ -92,7 +97,9 @@ void print(const Study& study, const Forecast& forecast) {
                                       : std::string("overturned or separated")));
   line("runs",
        fmt::format("{}{}, of which {} are done", plan.method.searches() ? "about " : "", forecast.status.expected, forecast.status.runs));
-  line("time", fmt::format("{} a run; {} on one core for all that are missing", format_quantity(forecast.seconds, "s"),
+  const std::string once =
+      forecast.before > 0 ? fmt::format(", {} before the first one of a sample", format_quantity(forecast.before, "s")) : "";
+  line("time", fmt::format("{} a run{}; {} on one core for all that are missing", format_quantity(forecast.seconds, "s"), once,
                            format_quantity(forecast.left(), "s")));
   line("memory", fmt::format("{} a worker{}", format_bytes(forecast.memory),
                              forecast.together > 1 ? fmt::format(", with {} runs in lockstep", forecast.together) : ""));
@@ -192,13 +199,24 @@ int check_study(const Options& options) {
   request.factor = cloud ? start : start / study.of.motions[request.motion].intensity;
   const std::size_t together = group_size(study, computer, request, status);
   const double before = worker_time();
-  const StudyResult trial = compute_in_worker(study, computer, {request}).front();
-  const double seconds = seconds_of(study, computer, request, worker_time() - before);
+  const std::vector<StudyResult> trials =
+      compute_in_worker(study, computer, study.reduced ? group_of(study, request, 2) : std::vector{request});
+  const StudyResult& trial = trials.front();
+  const double all = worker_time() - before;
+  // a reduced model is begun once for all motions of a sample: the second run tells what the others take
+  const bool told = study.reduced && trials.size() == 2;
+  const double seconds = told ? std::min(trials.back().wall, all) : seconds_of(study, computer, request, all);
   const double memory = together == 1 ? largest_memory() : memory_of_group(study, computer, request, together);
   const Case read = case_of_sample(study.of, 0);
   const RunSpec spec = run_of_study(study.of, read, 0, 1);
   const BuiltCase built = build(read, spec);
-  const Forecast forecast{status, seconds, memory, static_cast<double>(line_of(trial).size()), together};
+  const Forecast forecast{status,
+                          seconds,
+                          memory,
+                          static_cast<double>(line_of(trial).size()),
+                          told ? std::max(0.0, all - 2 * seconds) : 0,
+                          study.of.samples.size(),
+                          together};
   const std::vector<std::string> said = warnings_of(study, built, spec, read, trial);
   if (options.json) {
     print_text(json_of(forecast, said));

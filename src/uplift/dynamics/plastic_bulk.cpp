@@ -91,14 +91,14 @@ Sparse PlasticBulk::softening(const Vector& displacement, const Update& step, co
   const Vector full = model_.full(displacement, 0, step.at);
   scratch_.element.duration = step.duration;
   std::vector<Triplet> entries;
-  std::vector<double> unused;
+  std::vector<double> history;
   Matrix tangent, elastic;
   for (const One& one : elements_) {
-    const auto before = history_of(one, step.old.history);
-    unused.assign(before.begin(), before.end());
+    const auto before = history_of(one, step.old.history), after = history_of(one, now.history);
+    history.assign(after.begin(), after.end());  // the modes begin where `respond` has found their balance
     of_element(one, full, scratch_.displacement);
-    if (one.element->yields(before, history_of(one, now.history)) &&
-        one.element->respond(scratch_.displacement, before, unused, scratch_.element, nullptr, &tangent).converged) {
+    if (one.element->yields(before, after) &&
+        one.element->respond(scratch_.displacement, before, history, scratch_.element, nullptr, &tangent).converged) {
       one.element->form({&elastic, nullptr, nullptr});
       whole = whole && (tangent - tangent.transpose()).norm() <= round_off * elastic.norm();
       tangent = (0.5 * (tangent + tangent.transpose()) - elastic).eval();

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t mixing_depth = 5;
 constexpr int patience = 5;
-/// From such a residual on, sizes of forces are those of the step.
+/// Part of the forces that is left: from there on their sizes are those of the iteration before.
 constexpr double near_balance = 0.1;
 
 }  // namespace
@@ -198,8 +198,8 @@ Outcome PlasticNewton::iterate(const Step& step, const Make& make, Vector& incre
     }
     moved_ = step.start.displacement + increment;
     if (!moved_.allFinite()) break;
-    const bool sized = !residuals_.empty() && residuals_.back() < near_balance;
-    if (const BulkResponse response = bulk_.respond(moved_, {step.old, step.at, step.duration}, now, sized ? nullptr : &size_);
+    const bool sizes_known = !residuals_.empty() && residuals_.back() < near_balance;
+    if (const BulkResponse response = bulk_.respond(moved_, {step.old, step.at, step.duration}, now, sizes_known ? nullptr : &size_);
         !response.converged) {
       now.history = step.old.history;  // the next update begins anew, not where this one has failed
       if (shorten_search()) continue;

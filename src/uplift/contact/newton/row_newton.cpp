@@ -20,7 +20,7 @@ constexpr double price_of_reference = 10;    // factors of all rows: what points
 constexpr int patience_with_candidate = 20;  // factors
 constexpr int most_updates = 50;             // of a reference, before round-off is left behind
 constexpr double negligible = 0.1;           // of what an iteration may leave: all that it takes as zero
-constexpr double near = 1e-3;                // of |z|: iterations from there on hardly add to what the directions left as round-off
+constexpr double near_solution = 1e-3;       // of |z|: iterations from there on hardly add to what the directions left as round-off
 constexpr double same_slope = 1e-10;         // of a slope: a smaller difference is round-off
 
 double cubed(std::size_t rows) {
@@ -278,7 +278,7 @@ void RowNewton::measure() {
 /// Goes to origin + alpha step: forces, openings, laws and s.
 void RowNewton::look(double alpha, NewtonWork& work, InterfaceSolution& solution) {
   force_ = origin_force_ + alpha * force_step_;
-  if (anew_)
+  if (opens_anew_)
     opening_of(force_, opening_);
   else
     opening_ = origin_opening_ + alpha * opening_step_;
@@ -365,8 +365,8 @@ bool RowNewton::iterate(double tolerance, NewtonWork& work, InterfaceSolution& s
     LineSearch search(k > 0 && k < patience ? -rest_.dot(opening_step_) : 0);  // G . d = s . dg
     origin_force_ = force_;
     origin_opening_ = opening_;
-    anew_ = !made_anew && size_ <= near * reference;
-    made_anew |= anew_;
+    opens_anew_ = !made_anew && size_ <= near_solution * reference;
+    made_anew |= opens_anew_;
     do look(search.share(), work, solution);
     while (search.goes_on(-rest_.dot(opening_step_)));
     measure();

@@ -68,7 +68,8 @@ class RowNewton final : public MethodWork {
   std::vector<Index> rows_, other_rows_;  // of the factor, ascending
   std::vector<Index> bent_;               // rows where s is not zero
   Vector slopes_, change_;                // of the factor, as in NewtonWork; less those of the reference where it is one of its changes
-  bool valid_ = false, slow_ = false, follows_ = false, anew_ = false;
+  bool valid_ = false, slow_ = false, follows_ = false;
+  bool opens_anew_ = false;              // the openings of the next look follow from the forces, not from the direction
   Matrix reference_compliance_;          // F0
   Vector none_, reference_, candidate_;  // slopes: 0, k0, those of the next reference
   bool has_reference_ = false, from_reference_ = false;
