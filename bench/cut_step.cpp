@@ -1,8 +1,9 @@
 // What a dynamic step of a cut model costs beside that of an aligned joint: a raft on soil that rocks and lifts, in the plane and in space.
 // The aligned mesh has the same rows of cells, the one with the underside as a line of nodes; so both models have as many unknowns and,
-// with a level cut, as many points. Beside inclined cuts stands a second aligned joint: about as many points and unknowns, in a mesh with
-// finer cells at the raft and longer ones elsewhere. In turns, in one process, least time of every piece of the run between two reports of
-// progress. A step includes records, energies and checks. Usage: bench_cut_step [ROUNDS [MODEL]], models from 1 on.
+// with a level cut of quadrilaterals or hexahedra, as many points. Beside other cuts stands a second aligned joint: about as many points
+// and unknowns, in a mesh with finer cells at the raft and longer ones elsewhere. In turns, in one process, least time of every piece of
+// the run between two reports of progress. A step includes records, energies and checks. Usage: bench_cut_step [ROUNDS [MODEL]], models
+// from 1 on.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -180,21 +181,31 @@ int main(int count, char** words) {
                               .depth = 2,
                               .cells = 4,
                               .slope = 0.007,
-                              .fine = 22,
-                              .beside = 1,
-                              .deep = 3,
+                              .fine = 11,
+                              .beside = 4,
+                              .deep = 8,
                               .label = "space, hexahedra, inclined"};
   uplift::Raft with_friction = inclined;
   with_friction.friction = true;
   with_friction.label = "space, hexahedra, inclined, friction";
+  uplift::Raft tetrahedra = inclined;  // six of a cube; level: a point on every edge that the cut crosses
+  tetrahedra.cell = Cell::tet4;
+  tetrahedra.slope = 0;
+  tetrahedra.fine = 16, tetrahedra.beside = 3, tetrahedra.deep = 5;
+  tetrahedra.label = "space, tetrahedra, level";
+  uplift::Raft inclined_tetrahedra = tetrahedra;
+  inclined_tetrahedra.slope = inclined.slope;
+  inclined_tetrahedra.label = "space, tetrahedra, inclined";
   const std::vector<uplift::Raft> rafts{
       {.label = "plane, quadrilaterals, level"},
       {.cells = 16, .label = "plane, quadrilaterals of 1/16 m, level"},
       {.slope = 0.007, .fine = 32, .beside = 25, .deep = 30, .label = "plane, quadrilaterals, inclined"},
-      {.cell = Cell::tri3, .label = "plane, triangles, level"},
+      {.cell = Cell::tri3, .fine = 32, .beside = 25, .deep = 30, .label = "plane, triangles, level"},
       {.dimension = 3, .cell = Cell::hex8, .soil = 5, .depth = 2, .cells = 4, .label = "space, hexahedra, level"},
       inclined,
-      with_friction};
+      with_friction,
+      tetrahedra,
+      inclined_tetrahedra};
   uplift::prepare_heap();
   for (std::size_t k = 0; k < rafts.size(); ++k)
     if (count < 3 || std::atoi(words[2]) == static_cast<int>(k) + 1) uplift::measure(rafts[k], rounds);

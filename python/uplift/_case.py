@@ -343,6 +343,7 @@ class Case(InterfaceTables, StructureTables, MotionTables, ResultTables):
         controls: int = 0,
         scale: Optional[Tuple[float, float]] = None,
         seed: Optional[int] = None,
+        model: Optional[Union[str, "os.PathLike[str]"]] = None,
     ) -> str:
         """Makes a reduced model of the case, by the program (guide, "Reduced models"), and returns its size and its error in sentences.
 
@@ -354,6 +355,7 @@ class Case(InterfaceTables, StructureTables, MotionTables, ResultTables):
             controls: control runs, whole and reduced, that state the error (59: 95 % of all runs with 95 % confidence).
             scale: the motions of the control runs are multiplied by factors between these two; default 0.5, 1.5.
             seed: of the random numbers of the control runs.
+            model: a reduced model of the same structure, for which control runs are made instead of a new one.
 
         Raises InputError for a case that a reduced model does not represent, OutputError where the file could not be written, and ValueError
         for a law in Python.
@@ -363,6 +365,7 @@ class Case(InterfaceTables, StructureTables, MotionTables, ResultTables):
         given = {"--frequency": frequency, "--size": size, "--target": target, "--controls": controls, "--seed": seed}
         words = [word for name, value in given.items() if value is not None for word in (name, str(value))]
         words += ["--scale", f"{scale[0]},{scale[1]}"] if scale is not None else []
+        words += ["--model", os.path.abspath(os.fspath(model))] if model is not None else []
         with tempfile.TemporaryDirectory() as folder:
             case = self._file
             if not self._is_its_file():

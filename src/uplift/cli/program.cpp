@@ -30,6 +30,7 @@ struct Choices {
   uplift::cli::MotionOptions motion;
   uplift::cli::StudyOptions study;
   uplift::ReduceOptions reduce;
+  std::string model;                    // that gets control runs
   std::vector<double> scale{0.5, 1.5};  // of `reduce`
   std::vector<std::string> words;       // of `soil`
   int modes = 6;
@@ -157,20 +158,28 @@ void declare(CLI::App& app, Choices& given) {
 
   command = add(app, "reduce", "make a reduced model of a case, with which runs of the case take a fraction of the time",
                 "  uplift reduce tower --controls 19\n  uplift reduce tower --size 120 --out tower/coarse.rom\n"
+                "  uplift reduce tower --model tower/coarse.rom --controls 59 --out tower/coarse.rom\n"
                 "Then reduced_model = \"tower.rom\" in the case file makes its runs use it.");
   take_case(command, options);
   command->add_option("-o,--out", options.out,
                       "the file (default NAME.rom beside the case file); an earlier one is moved to NAME.rom.1, ...");
+  CLI::Option* model = command->add_option(
+      "--model", given.model, "a reduced model of the same structure: control runs are made for it (--controls) instead of a new one");
   command->add_option("-f,--frequency", given.reduce.frequency, "motions up to about this frequency [Hz] are represented (default 25)")
-      ->check(CLI::Range(0.01, 1e4));
+      ->check(CLI::Range(0.01, 1e4))
+      ->excludes(model);
   command->add_option("--size", given.reduce.size, "number of coordinates; default: as many as the target asks for")
-      ->check(CLI::Range(1, 400));
+      ->check(CLI::Range(1, 400))
+      ->excludes(model);
   command->add_option("--target", given.reduce.target, "largest transfer error where --size is not given (default 0.0002)")
-      ->check(CLI::Range(1e-9, 0.5));
-  command
-      ->add_option("--controls", given.reduce.controls,
-                   "control runs, full and reduced, that state the error (59: 95 % of all runs with 95 % confidence)")
-      ->check(CLI::Range(0, 10000));
+      ->check(CLI::Range(1e-9, 0.5))
+      ->excludes(model);
+  CLI::Option* controls =
+      command
+          ->add_option("--controls", given.reduce.controls,
+                       "control runs, full and reduced, that state the error (59: 95 % of all runs with 95 % confidence)")
+          ->check(CLI::Range(0, 10000));
+  model->needs(controls);
   command
       ->add_option("--scale", given.scale,
                    "FROM,TO: the motions of the control runs are multiplied by factors between these (default 0.5,1.5)")
@@ -252,7 +261,7 @@ int dispatch(const CLI::App& app, const Choices& given) {
   if (name == "reduce") {
     ReduceOptions wanted = given.reduce;
     wanted.least_scale = given.scale.front(), wanted.most_scale = given.scale.back();
-    return cli::reduce(given.options, wanted);
+    return cli::reduce(given.options, given.model, wanted);
   }
   if (name == "modes") return cli::modes(given.options, given.modes);
   if (name == "soil") return cli::soil(given.options, given.words);

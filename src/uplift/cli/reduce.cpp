@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <memory>
 
 #include "uplift/base/file.h"
 #include "uplift/cli/console.h"
@@ -36,10 +37,12 @@ void write(const Options& options, const std::string& path, const ReducedModel& 
 
 }  // namespace
 
-int reduce(const Options& options, const ReduceOptions& wanted) {
+int reduce(const Options& options, const std::string& model, const ReduceOptions& asked) {
+  ReduceOptions wanted = asked;
   if (!(wanted.least_scale <= wanted.most_scale))
     throw InputError({"uplift reduce", 0}, "--scale", "the smaller factor before the larger one",
                      fmt::format("{:g},{:g}", wanted.least_scale, wanted.most_scale));
+  if (!model.empty()) wanted.model = std::make_shared<const ReducedModel>(read_reduced_model_file(model, {"uplift reduce", 0}, "--model"));
   catch_interrupts();
   const LoadedCase loaded = load(options);
   const fs::path results = default_result_path(loaded.read);
@@ -51,10 +54,13 @@ int reduce(const Options& options, const ReduceOptions& wanted) {
     return interrupt_exit_code();
   }
   write(options, path, *reduced);
-  if (options.quiet) return Exit::done;
+  if (interrupt_asked() && !options.quiet)
+    complain(fmt::format("{}: {} of {} control runs were made; uplift reduce --model {} makes others", interrupt_text(),
+                         reduced->controls ? reduced->controls->runs : 0, wanted.controls, path));
+  if (options.quiet) return interrupt_asked() ? interrupt_exit_code() : Exit::done;
   say(fmt::format("{} coordinates for {} unknowns, up to {:g} Hz, transfer error {:.1e}", reduced->vectors.cols(), reduced->vectors.rows(),
                   reduced->frequency, reduced->transfer_error));
-  if (wanted.size == 0 && reduced->transfer_error > wanted.target)
+  if (!wanted.model && wanted.size == 0 && reduced->transfer_error > wanted.target)
     say(fmt::format(
         "The target of {:g} is not reached with all the coordinates that a basis gets. Control runs (--controls) state what that "
         "costs; a lower frequency (--frequency) or fewer points of the interface need fewer coordinates.",
@@ -71,7 +77,7 @@ int reduce(const Options& options, const ReduceOptions& wanted) {
     say("no control runs: the error of runs with it is not known (--controls)");
   }
   say(fmt::format("written to {}; a case uses it with reduced_model = \"{}\"", path, fs::path(path).filename().string()));
-  return Exit::done;
+  return interrupt_asked() ? interrupt_exit_code() : Exit::done;
 }
 
 }  // namespace uplift::cli

@@ -4,7 +4,8 @@
 
 namespace uplift::cli {
 
-/// Makes a reduced model of a case; options.out is its file.
-int reduce(const Options& options, const ReduceOptions& wanted);
+/// Makes a reduced model of a case; options.out is its file. `model`: the file of a reduced model of the same structure, which gets control
+/// runs instead; empty: none.
+int reduce(const Options& options, const std::string& model, const ReduceOptions& wanted);
 
 }  // namespace uplift::cli

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <random>
 #include <set>
 #include <utility>
 
@@ -16,6 +14,7 @@
 #include "uplift/model/matrix_sum.h"
 #include "uplift/reduction/projection.h"
 #include "uplift/reduction/training.h"
+#include "uplift/session/control_runs.h"
 #include "uplift/session/steps.h"
 
 namespace uplift {
@@ -97,111 +96,6 @@ std::vector<int> floor_unknowns(const BuiltCase& built) {
   return unknowns;
 }
 
-/// The motions of a case times a factor.
-void scale_motions(Model& model, double factor) {
-  for (TimeLoad& load : model.time_loads)
-    if (!load.constant && !load.dead) load.shape *= factor;
-  for (TimeLoadTable& table : model.time_load_tables) table.pattern *= factor;
-  for (PrescribedMotion& motion : model.motions) motion.shape *= factor, motion.opening *= factor;
-  for (GroundAcceleration& ground : model.grounds) ground.direction *= factor;
-}
-
-/// One run for the control of another: its openings over time and its floor spectra.
-struct ControlRun {
-  RunResult result;
-  std::vector<Vector> openings;  // of all rows, at the beginning and after every step
-  std::vector<char> normal;      // whether a row is an opening, not a slip
-  std::vector<FloorSpectra> floors;
-};
-
-ControlRun control_run(BuiltCase built, const ReducedModel* reduced, const Watch& watch) {
-  ControlRun made;
-  built.plan.frames = 0;
-  for (const Interface& interface : built.model.interfaces)
-    for (int row = 0; row < interface.rows(); ++row) made.normal.push_back(row >= interface.batch.normal());
-  const Observe observe = [&](const Snapshot& at) {
-    if (at.stepper != nullptr) made.openings.push_back(at.state.opening);
-  };
-  Keeping keeping;
-  std::optional<RunState> begin;
-  if (reduced != nullptr) {
-    begin = begin_reduced(*reduced, {}, built, watch, made.result);
-    if (!begin) return made;
-    keeping.from = &*begin;
-  }
-  made.result = run(built.model, built.plan, built.behaviours, watch, observe, &keeping);
-  made.floors = floor_spectra(built.plan, made.result);
-  return made;
-}
-
-/// Sizes are compared: where both signs reach nearly the same value, either may be the larger one.
-void take(double& most, double full, double reduced) {
-  if (full != 0) most = std::max(most, std::abs(std::abs(reduced) - std::abs(full)) / std::abs(full));
-}
-
-/// Openings over time, or slips.
-void take_history(double& most, const ControlRun& full, const ControlRun& reduced, bool normal) {
-  double difference = 0, size = 0;
-  for (std::size_t i = 0; i < std::min(full.openings.size(), reduced.openings.size()); ++i)
-    for (Index row = 0; row < full.openings[i].size(); ++row) {
-      if ((full.normal[static_cast<std::size_t>(row)] != 0) != normal) continue;
-      const double whole = full.openings[i][row];
-      difference += std::pow(whole - reduced.openings[i][row], 2);
-      size += std::pow(whole - full.openings.front()[row], 2);
-    }
-  if (size > 0) most = std::max(most, std::sqrt(difference / size));
-}
-
-void take_floors(const ControlRun& full, const ControlRun& reduced, double highest, ControlErrors& errors) {
-  for (std::size_t k = 0; k < std::min(full.floors.size(), reduced.floors.size()); ++k) {
-    const FloorSpectra &one = full.floors[k], &other = reduced.floors[k];
-    const bool broadened = !one.broadened.empty();
-    const std::vector<Spectrum>&spectra = broadened ? one.broadened : one.raw, &others = broadened ? other.broadened : other.raw;
-    for (std::size_t d = 0; d < spectra.size(); ++d)
-      for (std::size_t i = 0; i < spectra[d].values.size(); ++i)
-        if (const double frequency = spectra[d].frequencies[i]; frequency <= highest)
-          take(errors.floor_spectrum, spectra[d].values[i], value_at(others[d], frequency));
-  }
-}
-
-ControlErrors control_errors(const LoadedCase& loaded, const ReducedModel& reduced, const ReduceOptions& options, const Control& control) {
-  RunSpec own = runs_of_case(loaded.read).front();
-  own.pictures = false;
-  std::vector<const CaseOtherMotion*> motions{nullptr};
-  if (const std::optional<CaseComparison>& compare = loaded.read.input->compare)
-    for (const CaseOtherMotion& motion : compare->motions) motions.push_back(&motion);
-  ControlErrors errors;
-  errors.runs = options.controls;
-  errors.least_scale = options.least_scale, errors.most_scale = options.most_scale;
-  errors.motions = motions.size() == 1 ? "the motion of the case" : fmt::format("one of the {} motions of the case", motions.size());
-  errors.motions += " with either sign";
-  std::mt19937_64 random(options.seed);
-  const auto share = [&] { return static_cast<double>(random() >> 11U) * 0x1p-53; };
-  for (int k = 0; k < options.controls && !control.is_stopped(); ++k) {
-    RunSpec spec = own;
-    spec.motion = motions[static_cast<std::size_t>(share() * static_cast<double>(motions.size()))];
-    const double scale = (share() < 0.5 ? -1 : 1) * (options.least_scale + (options.most_scale - options.least_scale) * share());
-    const auto make = [&] {
-      BuiltCase built = build_run(loaded, spec);
-      scale_motions(built.model, scale);
-      return built;
-    };
-    const std::string label = fmt::format("control run {} of {}", k + 1, options.controls);
-    const auto watch = [&](const std::string& which) { return control.watch ? control.watch(label + which) : Watch(); };
-    const ControlRun full = control_run(make(), nullptr, watch("")), other = control_run(make(), &reduced, watch(", reduced"));
-    if (full.result.status != other.result.status) {
-      ++errors.different;
-      continue;
-    }
-    take(errors.opening, full.result.max_opening.value, other.result.max_opening.value);
-    take(errors.moment, full.result.max_base_moment.value, other.result.max_base_moment.value);
-    take_history(errors.history, full, other, true);
-    take_history(errors.slip, full, other, false);
-    take_floors(full, other, reduced.frequency, errors);
-  }
-  return errors;
-}
-
 }  // namespace
 
 std::optional<ReducedModel> reduce_case(const LoadedCase& loaded, const ReduceOptions& options, const Control& control) {
@@ -212,39 +106,45 @@ std::optional<ReducedModel> reduce_case(const LoadedCase& loaded, const ReduceOp
   {
     BuiltCase built = build_run(loaded, spec);
     make_whole(built.model);
-    refuse(built, where);
-    TrainingOptions training{.frequency = options.frequency, .size = options.size, .target = options.target};
-    training.floors = floor_unknowns(built);
-    training.loads_floors = !built.plan.floors.empty();
-    if (const Watch watch = control.watch ? control.watch("basis") : Watch(); watch)
-      training.go_on = [watch](double share) { return watch({.fraction = share}); };
-    Basis basis = train(built.model, *built.plan.solver, training);
-    if (control.is_stopped()) return {};
-    if (!basis.why.empty()) throw InputError(where, "", "a structure with a reduced model", basis.why);
-    reduced->version = UPLIFT_VERSION;
-    reduced->matrices = matrices_hash(built.model);
-    reduced->loads = orthonormal_loads(built.model);
-    reduced->frequency = options.frequency;
-    reduced->energy_frequency = basis.energy_frequency;
-    reduced->transfer_error = basis.transfer_error;
-    reduced->rigid = basis.rigid;
-    reduced->vectors = std::move(basis.vectors);
+    if (options.model) {
+      *reduced = *options.model;
+      refuse_reduced(*reduced, where, built);
+    } else {
+      refuse(built, where);
+      TrainingOptions training{.frequency = options.frequency, .size = options.size, .target = options.target};
+      training.floors = floor_unknowns(built);
+      training.loads_floors = !built.plan.floors.empty();
+      if (const Watch watch = control.watch ? control.watch("basis") : Watch(); watch)
+        training.go_on = [watch](double share) { return watch({.fraction = share}); };
+      Basis basis = train(built.model, *built.plan.solver, training);
+      if (control.is_stopped()) return {};
+      if (!basis.why.empty()) throw InputError(where, "", "a structure with a reduced model", basis.why);
+      reduced->version = UPLIFT_VERSION;
+      reduced->matrices = matrices_hash(built.model);
+      reduced->loads = orthonormal_loads(built.model);
+      reduced->frequency = options.frequency;
+      reduced->energy_frequency = basis.energy_frequency;
+      reduced->transfer_error = basis.transfer_error;
+      reduced->rigid = basis.rigid;
+      reduced->vectors = std::move(basis.vectors);
+    }
   }
-  if (options.controls > 0) {
-    ControlErrors errors = control_errors(loaded, *reduced, options, control);
-    if (control.is_stopped()) return {};
-    reduced->controls = std::move(errors);
-  }
+  if (options.controls > 0)
+    if (ControlErrors errors = control_errors(loaded, *reduced, options, control); errors.runs > 0) reduced->controls = std::move(errors);
   return reduced;
+}
+
+ReducedModel read_reduced_model_file(const std::string& path, const Where& where, const std::string& name) {
+  std::string why;
+  std::optional<ReducedModel> found = read_reduced_model(read_file(path), why);
+  if (!found) throw InputError(where, name, "a file that `uplift reduce` has written", in_quotes(path) + ": " + why);
+  return std::move(*found);
 }
 
 std::shared_ptr<const ReducedModel> read_reduced_model_of(const Values& root) {
   if (!root.has(key)) return nullptr;
   const std::filesystem::path path = path_beside(root.where(key), root.text(key));
-  std::string why;
-  std::optional<ReducedModel> found = read_reduced_model(read_file(path), why);
-  if (!found) throw InputError(root.where(key), key, "a file that `uplift reduce` has written", in_quotes(path.string()) + ": " + why);
-  return std::make_shared<const ReducedModel>(std::move(*found));
+  return std::make_shared<const ReducedModel>(read_reduced_model_file(path.string(), root.where(key), key));
 }
 
 void refuse_reduced(const ReducedModel& reduced, const Where& where, const BuiltCase& built) {

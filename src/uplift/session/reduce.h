@@ -17,11 +17,16 @@ struct ReduceOptions {
   int controls = 0;                            // runs that state the error
   double least_scale = 0.5, most_scale = 1.5;  // of the motions of the control runs
   std::uint64_t seed = 1;
+  std::shared_ptr<const ReducedModel> model = nullptr;  // of the same structure: gets control runs, and no basis is made; null: a new one
 };
 
-/// The reduced model of a case. Empty when it was stopped. Throws InputError: the case has what reduced models do not represent, or its
-/// structure has unknowns without mass and stiffness.
+/// The reduced model of a case. Empty when it was stopped before the basis was complete; later, it states the errors of the control runs
+/// that were made. Throws InputError: the case has what reduced models do not represent, its structure has unknowns without mass and
+/// stiffness, or the given model is that of another structure.
 std::optional<ReducedModel> reduce_case(const LoadedCase& loaded, const ReduceOptions& options, const Control& control);
+
+/// Reads a file of `uplift reduce`, which `name` at `where` names. Throws InputError.
+ReducedModel read_reduced_model_file(const std::string& path, const Where& where, const std::string& name);
 
 /// Reads the reduced model that a case names. Throws InputError.
 std::shared_ptr<const ReducedModel> read_reduced_model_of(const Values& root);
