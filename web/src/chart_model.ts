@@ -31,6 +31,13 @@ function pad_log(range: Extent, part: number): Extent {
   return { min: range.min / by, max: range.max * by };
 }
 
+/** A history that was thinned out begins and ends a little inside the run: the axis goes from 0 to the full second. */
+function whole_time(range: Extent): Extent {
+  const little = 0.01 * (range.max - range.min);
+  const end = Math.ceil(range.max);
+  return { min: range.min > 0 && range.min < little ? 0 : range.min, max: end - range.max < little ? end : range.max };
+}
+
 const pad = (range: Extent, log: boolean, part: number): Extent =>
   log ? pad_log(range, part) : pad_linear(range, part);
 
@@ -105,7 +112,7 @@ export class ChartModel {
     // The x of a history is given (time, ratio); the x of a loop is a result and can blow up as y does.
     const range = history ? union(shown.map((c) => c.xrange)) : union(base.map((c) => c.xrange));
     if (!range) return log ? { min: 0.1, max: 10 } : { min: 0, max: 1 };
-    if (history && range.max > range.min && !shown.some((c) => c.length <= 40)) return range;
+    if (history && range.max > range.min && !shown.some((c) => c.length <= 40)) return this.chart.x.unit === "s" ? whole_time(range) : range;
     return pad(range, log, history ? 0.02 : 0.06);
   }
 

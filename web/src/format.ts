@@ -95,3 +95,12 @@ export function with_unit(label: string, unit: string): string {
 export function file_name(text: string): string {
   return text.toLowerCase().replace(/[^a-z0-9._-]+/g, "_").replace(/^_+|_+$/g, "") || "figure";
 }
+
+/** Typography of a sentence from the program: minus signs, units as everywhere on the page, a number and its unit on one line. */
+export function tied(text: string): string {
+  return text
+    .replace(/(^|[ (])-(?=\d)/g, "$1\u2212")
+    .replace(/(\d [kMG]?N) m(?![a-z])/g, "$1·m")
+    .replace(/(\d k?m\/s)2\b/g, "$1²")
+    .replace(/(\d) (?=(?:%|[µmkMG]?(?:m|s|g|N|Pa|J|Hz|rad|t)(?![a-z])))/g, "$1\u00a0");
+}

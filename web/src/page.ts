@@ -106,7 +106,7 @@ export function repeat_card(report: Report): HTMLElement {
   const lines: [string, string][] = [
     ["Program", report.version ? `uplift ${report.version}${report.builtWith ? `, ${report.builtWith}` : ""}` : ""],
     ["Created", created_text(report.created)],
-    [study ? "Plan" : "Case file", from.file],
+    [study ? "Plan" : report.verdict.level === "motion" ? "Record" : "Case file", from.file],
     ["SHA-256", from.sha256],
     ...(from.inputs ?? []).flatMap(({ file, sha256 }): [string, string][] => [["Input file", file], ["SHA-256", sha256]]),
     ...(study ? [["Seed of the samples", String(study.provenance.seed)] as [string, string]] : []),
@@ -115,7 +115,9 @@ export function repeat_card(report: Report): HTMLElement {
   const source = h("pre", { tabindex: 0 }, h("code", {}, from.resolved));
   const button = h("button", { type: "button", class: "copy" }, "Copy");
   button.addEventListener("click", () => void copy(from.resolved, button, source));
-  const files = [from.file, ...(from.inputs ?? []).map(({ file }) => file)].filter(Boolean);
+  // The files of a study are named relative to its plan.
+  const folder = study && from.file.includes("/") ? from.file.slice(0, from.file.lastIndexOf("/") + 1) : "";
+  const files = [from.file, ...(from.inputs ?? []).map(({ file }) => (file.startsWith("/") ? file : folder + file))].filter(Boolean);
   return h(
     "div",
     { class: "card case-card" },

@@ -146,11 +146,13 @@ function base_of(catalog: Catalog, summary: Summary, extras: VerdictExtras, k: n
 function criteria_of(catalog: Catalog, summary: Summary): Criterion[] {
   return summary.verdict.criteria.map((each) => {
     const quantity = quantity_of(catalog, each.quantity, each.unit);
+    // A residual has no more decimals than its remaining variation, here as in its own row.
+    const swing = summary.verdict.interfaces.find(({ name }) => name === each.interface)?.numbers[each.quantity]?.swing;
     return {
       label: quantity.meaning,
       interface: each.interface ?? each.beam ?? "",
       state: each.result,
-      valueText: each.value === null ? "not computed" : format_value(quantity, each.value),
+      valueText: each.value === null ? "not computed" : format_within(quantity, each.value, swing),
       limitText: format_value(quantity, each.limit),
       atLeast: each.kind === "at_least",
       source: each.source,

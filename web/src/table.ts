@@ -1,7 +1,7 @@
 // Tables: sortable columns, groups of rows, status chips, units with readable prefixes, CSV.
 import { download, table_csv } from "./export";
 import { h } from "./dom";
-import { file_name, fixed, number, pick_scale, scientific, with_unit, type Scale } from "./format";
+import { file_name, fixed, number, pick_scale, scientific, tied, with_unit, type Scale } from "./format";
 import { colour_variable } from "./palette";
 import type { Runs } from "./runs";
 import type { Cell, Column, Row, Table } from "./types";
@@ -190,6 +190,6 @@ export class TableCard {
     if (text.length > LONG) props.class += " is-long";
     const known = this.runs_.names.includes(text);
     const dot = known ? h("i", { class: "dot", style: `background:${colour_variable(this.runs_.slot(text))}` }) : null;
-    return h(tag, props, dot, text);
+    return h(tag, props, dot, tied(text));
   }
 }

@@ -1,7 +1,7 @@
 // The first page: headline, uplifted share over time, comparison with the bonded model, the criteria of the case, and the estimate from
 // the tension ratio of a linear analysis.
 import { h, s, type Child } from "./dom";
-import { number } from "./format";
+import { number, tied } from "./format";
 import { share_chart } from "./share_chart";
 import { spectrum_chart } from "./spectrum_chart";
 import { study_block } from "./study_page";
@@ -30,15 +30,6 @@ const LEVEL_SIGN: Record<VerdictLevel, string> = {
 
 function level_sign(level: VerdictLevel): SVGElement {
   return s("svg", { class: "sign", viewBox: "0 0 24 24", width: 34, height: 34, "aria-hidden": "true" }, s("path", { d: LEVEL_SIGN[level] }));
-}
-
-/** Typography of a sentence from the program: minus signs, units as everywhere on the page, a number and its unit on one line. */
-function tied(text: string): string {
-  return text
-    .replace(/(^|[ (])-(?=\d)/g, "$1\u2212")
-    .replace(/(\d [kMG]?N) m(?![a-z])/g, "$1·m")
-    .replace(/(\d k?m\/s)2\b/g, "$1²")
-    .replace(/(\d) (?=(?:%|[µmkMG]?(?:m|s|g|N|Pa|J|Hz|rad|t)(?![a-z])))/g, "$1\u00a0");
 }
 
 function beside_table(base: BaseVerdict): HTMLElement | null {

@@ -105,7 +105,7 @@ std::vector<std::string> lines_of(std::string_view text) {
         break;
       }
     if (end == text.npos || end < most / 3) break;
-    lines.emplace_back(text.substr(0, end - 1));
+    lines.emplace_back(text.substr(0, text[end - 2] == ';' ? end - 2 : end - 1));
     text.remove_prefix(end);
   }
   lines.emplace_back(text);
@@ -178,8 +178,10 @@ void write_motion_origins(JsonWriter& json, const Histories& motions) {
     if (motion.azimuth) row("azimuth", fmt::format("{:.4g} degrees, clockwise from north", *motion.azimuth * 180 / std::numbers::pi));
     for (const std::string& repair : motion.repairs)
       for (const std::string& line : lines_of(repair)) row("repaired", line);
-    for (std::size_t i = 0; i < motion.processing.size(); ++i)
-      for (const std::string& line : lines_of(motion.processing[i])) row(fmt::format("step {}", i + 1), line);
+    for (std::size_t i = 0; i < motion.processing.size(); ++i) {
+      const std::vector<std::string> lines = lines_of(motion.processing[i]);
+      for (std::size_t k = 0; k < lines.size(); ++k) row(fmt::format("step {}{}", i + 1, k == 0 ? "" : ", continued"), lines[k]);
+    }
   }
   json.end_array().member("rowGroup", "name").end_object();
 }
