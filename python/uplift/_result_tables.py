@@ -172,8 +172,8 @@ class ResultTables(TableStore):
             mesh_factor: sizes of a made mesh are multiplied by this; 1: not changed, from 0.1 to 1; default 0.7.
             mesh_shift: the mesh around interface.cut is moved by this share of a cell, to both sides; 0: not moved,
                 from 0 to 0.45; default 0.3.
-            spectrum_band: a floor spectrum speaks up to the frequency where its runs differ by more than this share, >
-                0; default 0.1.
+            spectrum_band: a floor spectrum is reliable up to the frequency where its runs differ by more than this
+                share, > 0; default 0.1.
         """
         self._set("trust", {"stiffness_factor": stiffness_factor, "interior": interior, "mesh_factor": mesh_factor, "mesh_shift": mesh_shift, "spectrum_band": spectrum_band})
 

@@ -52,6 +52,24 @@ class BadInput(CliTest):
         text = self.replace("E = 2e10", 'E = "20000 MPaa"')
         self.refused(text, f'{{file}}:{line_of(text, "E = ")}: beam[0].E: expected a pressure > 0 Pa, found "20000 MPaa" (unknown unit "MPaa") (did you mean "MPa"?)')
 
+    def test_value_with_a_unit_without_quotation_marks(self):
+        text = self.replace("width = 3\n", "width = 3m\n")
+        self.refused(text, f'{{file}}:{line_of(text, "3m")}: expected TOML, found an error while parsing decimal integer: expected digit, '
+                     "saw 'm' (texts and values with a unit need quotation marks: \"top\", \"5 m\")")
+
+    def test_text_without_its_end(self):
+        text = self.replace('name = "soil"\n', 'name = "soil\n')
+        done = self.uplift("check", self.write(text).name, expect=2)
+        self.assertRegex(done.stderr, rf'^error: case\.toml:{line_of(text, "soil")}: .* \(is the closing quotation mark missing in this line\?\)$')
+
+    def test_gravity_upwards(self):
+        """Mass of 24317 + 10000 kg, 336.6 kN; the static load of 1 MN in the other direction is left out."""
+        text = self.replace("force = [0, -1e6]", "force = [0, 0]") + "[gravity]\nacceleration = [0, 9.81]\n"
+        self.write(text)
+        done = self.uplift("check", "case.toml", expect=None)
+        self.assertIn(f"warning: case.toml:{line_of(text, 'acceleration')}: the dead load pulls the base off the ground with 337 kN; is the "
+                      "sign of the acceleration right?", done.stdout)
+
     def test_wrong_type(self):
         text = self.replace("points = 11", 'points = "many"')
         self.refused(text, f'{{file}}:{line_of(text, "points")}: interface[0].footing.points: expected an integer from 1 to 100000, found the text "many"')

@@ -71,6 +71,21 @@ quantity = "abs_ax"
         for force, row in zip(inertia, rows):
             self.assertLess(abs(abs(float(row[shear])) - abs(force)), 1e-6 * largest)
 
+    def test_a_number_is_rounded_once(self):
+        """A residual still varies: its criterion has the decimals of its own row."""
+        self.write(BASE + """
+[[verdict.criterion]]
+quantity = "residual_settlement"
+limit = "10 mm"
+source = "none"
+""")
+        lines = self.uplift("run", "case.toml", "-o", "r").stdout.splitlines()
+        heads = [line for line in lines if re.fullmatch(r"  quantity +value +twice the step", line)]
+        self.assertEqual(len(heads), 1)
+        (row,) = [re.match(r"  Residual settlement +(-?[\d.]+ mm) .*remaining variation ±[\d.]+ mm$", line) for line in lines if "Residual settlement" in line]
+        (criterion,) = [line for line in lines if line.startswith("criterion met: residual settlement of soil")]
+        self.assertEqual(criterion, f"criterion met: residual settlement of soil {row[1]}, at most 10.0 mm (none)")
+
     def test_verdict_with_criteria(self):
         self.write(BASE + """
 [verdict]

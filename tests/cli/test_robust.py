@@ -370,7 +370,7 @@ class Places(RobustTest):
         loose = BASE[:BASE.index("[[rigid]]")] + BASE[BASE.index("[[load]]"):]
         top = next(number for number, line in enumerate(loose.splitlines(), 1) if line.startswith("top ="))
         self.refused(loose, f'{{file}}:{top}: expected a structure that its supports hold, found a mechanism: "top", "base" can move '
-                     "along (1, 0) without resistance")
+                     "along (1, 0) without resistance; hold it by a [[support]] or a [[spring]]")
         sweep = BASE.replace('type = "dynamic"', 'type = "dynamic"\nscheme = { type = "generalised_alpha", rho = 0.8 }') + (
             SPRINGS.format("a", "2e8") + '[compare.stiffness_sweep]\nlaw = { type = "springs", K_n = 2e8 }\nratios = [1]\n')
         self.refused(sweep, f"{{file}}:{len(sweep.splitlines()) - 1}: compare.stiffness_sweep: expected stages with the average acceleration: the sweep "

@@ -84,7 +84,7 @@ void print(const LoadedCase& loaded, const CheckedCase& checked) {
       line("suggested step, at most", fmt::format("{} ({})", format_quantity(found.suggested_step, "s"), found.bounds.front().reason));
   }
   if (found.seconds_per_step > 0)
-    line("cost", fmt::format("about {} a step, {} a run", format_quantity(found.seconds_per_step, "s"),
+    line("cost", fmt::format("about {} per step, {} per run", step_time_text(found.seconds_per_step),
                              format_quantity(found.seconds_per_step * static_cast<double>(found.steps), "s")));
   if (found.systems.factored + found.systems.iterated > 0)
     line("interface solver",
@@ -96,7 +96,7 @@ void print(const LoadedCase& loaded, const CheckedCase& checked) {
                                found.bulk->elsewhere_bytes > 0 ? fmt::format("; on each other rank up to {}, and the program",
                                                                              format_bytes(found.bulk->elsewhere_bytes))
                                                                : std::string()));
-  line("histories", fmt::format("{:.0f} rows x {:.0f} columns a run: {} in memory, about {} on disk", found.histories.rows,
+  line("histories", fmt::format("{:.0f} rows x {:.0f} columns per run: {} in memory, about {} on disk", found.histories.rows,
                                 found.histories.columns, format_bytes(found.histories.memory), format_bytes(found.histories.disk)));
   if (found.record_bytes > 0)
     line("floor spectra", fmt::format("{} at every step: {} a run",

@@ -47,7 +47,8 @@ std::size_t width_of(const std::string& text) {
 }
 
 bool numeric(const std::string& text) {
-  return !text.empty() && (std::isdigit(static_cast<unsigned char>(text[0])) || ((text[0] == '-' || text[0] == '+') && text.size() > 1));
+  return text.starts_with("±") ||
+         (!text.empty() && (std::isdigit(static_cast<unsigned char>(text[0])) || ((text[0] == '-' || text[0] == '+') && text.size() > 1)));
 }
 
 int terminal_width() {
@@ -106,6 +107,10 @@ std::string interrupt_text() {
   return "interrupted";
 }
 
+std::string step_time_text(double seconds) {
+  return seconds < 9.995e-4 ? fmt::format("{:.3g} µs", 1e6 * seconds) : format_quantity(seconds, "s");
+}
+
 void print_table(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
@@ -156,9 +161,11 @@ bool ProgressLine::operator()(const Progress& progress) {
   const double left = progress.fraction > 0 ? spent * (1 - progress.fraction) / progress.fraction : 0;
   constexpr int cells = 10;
   const int full = std::clamp(static_cast<int>(progress.fraction * cells), 0, cells);
-  std::string line = fmt::format("{} [{}{}] {:.0f} %, {:.0f} s left, t = {:.4g} s, dt = {:.3g} s, open {:.0f} %, energy error {}", label_,
-                                 std::string(full, '#'), std::string(cells - full, '.'), 100 * progress.fraction, left, progress.time,
-                                 progress.step, 100 * progress.open_fraction, percent(progress.energy_error));
+  std::string line = fmt::format("{} [{}{}] {:.0f} %, {:.0f} s left", label_, std::string(full, '#'), std::string(cells - full, '.'),
+                                 100 * progress.fraction, left);
+  if (progress.step > 0)  // the basis of a reduced model has no steps
+    line += fmt::format(", t = {:.4g} s, dt = {:.3g} s, open {:.0f} %, energy error {}", progress.time, progress.step,
+                        100 * progress.open_fraction, percent(progress.energy_error));
   if (!terminal_) {
     complain(line);
     return true;

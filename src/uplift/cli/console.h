@@ -16,6 +16,8 @@ void print_text(std::string_view text);
 void finish_output();
 /// One line on standard error. When that cannot be written, nobody can be told.
 void complain(std::string_view line);
+/// The computing time of a step [s]: "0.991 µs", "268 µs", "1.97 ms".
+std::string step_time_text(double seconds);
 /// A word as a shell takes it: in quotes where it needs them.
 std::string in_shell(const std::string& word);
 /// True when standard error is a terminal that can redraw a line.

@@ -56,7 +56,7 @@ name = "soil"
 body = "base"
 width = "4 m"
 thickness = "4 m"                     # perpendicular to the plane of the model
-points = 21
+points = 41
 
 [interface.law]                       # other laws: `uplift describe law`
 type = "sdm"                          # strong discontinuity method: opens and closes again

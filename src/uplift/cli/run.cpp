@@ -15,19 +15,30 @@ namespace {
 /// With the columns: what, value, how far the step still moves it, when and beside what.
 void say_facts(const std::vector<Verdict::Fact>& facts) {
   const bool checked = std::ranges::any_of(facts, [](const Verdict::Fact& fact) { return !fact.step_change.empty(); });
+  if (checked) say(fmt::format("  {:<34} {:<14} {}", "quantity", "value", "twice the step"));
   for (const Verdict::Fact& fact : facts)
-    say(checked ? fmt::format("  {:<34} {:<14} {:<10} {}", fact.label, fact.value, fact.step_change, fact.detail)
+    say(checked ? fmt::format("  {:<34} {:<14} {:<14} {}", fact.label, fact.value, fact.step_change, fact.detail)
                 : fmt::format("  {:<34} {:<14} {}", fact.label, fact.value, fact.detail));
 }
 
+/// The value of a criterion, rounded as in the facts above it: a residual has no more decimals than its remaining variation.
+std::string value_text(const VerdictNumbers& numbers, const CriterionResult& result) {
+  if (!result.value) return "not computed";
+  const VerdictQuantity& quantity = *result.criterion.quantity;
+  for (const InterfaceVerdict& each : numbers.interfaces)
+    if (each.name == result.interface)
+      if (const VerdictNumber* number = find_number(each.numbers, quantity.name); number && number->value == *result.value)
+        return text_of(*number);
+  return format_value(quantity, *result.value);
+}
+
 /// "criterion not met: max_opening of soil 13.7 mm, limit 10.0 mm (client)".
-void say_criteria(const std::vector<CriterionResult>& results) {
-  for (const CriterionResult& result : results) {
+void say_criteria(const VerdictNumbers& numbers) {
+  for (const CriterionResult& result : numbers.criteria) {
     const VerdictQuantity& quantity = *result.criterion.quantity;
     const std::string of = result.interface.empty() ? "" : " of " + result.interface;
-    say(fmt::format("criterion {}: {}{} {}, at {} {} ({})", to_string(result.state), quantity.brief, of,
-                    result.value ? format_value(quantity, *result.value) : "not computed", quantity.at_least ? "least" : "most",
-                    format_value(quantity, result.criterion.limit), result.criterion.source));
+    say(fmt::format("criterion {}: {}{} {}, at {} {} ({})", to_string(result.state), quantity.brief, of, value_text(numbers, result),
+                    quantity.at_least ? "least" : "most", format_value(quantity, result.criterion.limit), result.criterion.source));
   }
 }
 
@@ -56,14 +67,15 @@ int run_from(const Options& options, const std::string& from) {
     if (!results.verdict.consequence.empty()) say(results.verdict.consequence);
     if (!statics_alone(results.built.front().plan)) say(results.verdict.step_check.sentence());
     say_facts(results.verdict.facts);
-    say_criteria(results.verdict.numbers.criteria);
-    const double per_step = main.counts.steps > 0 ? 1e6 * main.wall / static_cast<double>(main.counts.steps) : 0;
+    say_criteria(results.verdict.numbers);
+    const std::string per_step =
+        main.counts.steps > 0 ? fmt::format(" ({} per step)", step_time_text(main.wall / static_cast<double>(main.counts.steps))) : "";
     if (statics_alone(results.built.front().plan))
       say(fmt::format("{}: static stages in {}, {}, {}", status_text(main), format_quantity(main.wall, "s"),
                       counted(main.counts.load_steps, "load step", "load steps"), counted(main.counts.retries, "retry", "retries")));
     else
-      say(fmt::format("{}: {} in {} ({:.2f} microseconds a step), {}", status_text(main), counted(main.counts.steps, "step", "steps"),
-                      format_quantity(main.wall, "s"), per_step, counted(main.counts.retries, "retry", "retries")));
+      say(fmt::format("{}: {} in {}{}, {}", status_text(main), counted(main.counts.steps, "step", "steps"), format_quantity(main.wall, "s"),
+                      per_step, counted(main.counts.retries, "retry", "retries")));
     say(fmt::format("results: {}/report.html", folder.path()));
     for (const std::string& list : results.field_lists) say(fmt::format("fields: {}/{} (for ParaView)", folder.path(), list));
   }

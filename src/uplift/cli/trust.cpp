@@ -31,17 +31,17 @@ void print_bands(const TrustAnswer& answer) {
     const std::optional<double> share = band.share();
     std::vector<std::string>& row = rows.emplace_back(
         std::vector<std::string>{std::string(band.quantity->brief), band.format_value(band.value), band.format_value(band.least),
-                                 band.format_value(band.most), share ? "+-" + percent(*share) : "", band.dominant});
+                                 band.format_value(band.most), share ? "±" + percent(*share) : "", band.dominant});
     if (many) row.insert(row.begin() + 1, band.interface);
   }
   print_table(rows);
 }
 
-/// How far each spectrum speaks, what ends it, and what would end it next.
+/// Up to which frequency each spectrum is reliable, what limits it, and what would limit it next.
 void print_spectra(const TrustAnswer& answer) {
   if (answer.spectra.empty()) return;
   say(fmt::format("\nfloor spectra: up to where every repetition lies within {} of the case", percent(answer.accepted)));
-  std::vector<std::vector<std::string>> rows{{"floor", "damping", "speaks to", "limited by", "else to", "by", "above broadened"}};
+  std::vector<std::vector<std::string>> rows{{"floor", "damping", "reliable to", "limited by", "next limit", "by", "above broadened"}};
   for (const TrustSpectrum& each : answer.spectra) {
     const bool ends = !each.limited_by.empty(), next = ends && each.reaches.size() > 1;
     const bool next_ends = next && each.reaches[1].to < each.frequencies.back();

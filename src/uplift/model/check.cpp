@@ -157,7 +157,9 @@ void check_static(const Model& model, const std::function<Where(const std::strin
       model.interfaces.empty() ? "a structure that its supports hold" : "a structure that stands when all its interfaces are closed";
   throw InputError(place_of_interface(model, node), "", wanted,
                    fmt::format("a mechanism: {} without resistance{}", loose,
-                               hinged.empty() ? "" : "; beams end in hinges of solids: " + named_places(model, hinged)));
+                               !hinged.empty()            ? "; beams end in hinges of solids: " + named_places(model, hinged)
+                               : model.interfaces.empty() ? "; hold it by a [[support]] or a [[spring]]"
+                                                          : "; hold it by a [[support]], a [[spring]] or K_t of an interface"));
 }
 
 namespace {

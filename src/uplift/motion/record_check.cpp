@@ -74,7 +74,8 @@ MotionUnit unit_of_draft(const RecordText& text, const RecordOptions& options, c
   if (options.unit.empty() && draft.unit.empty()) {
     double most = 0;
     for (const double value : draft.samples.values) most = std::max(most, std::abs(draft.scale * value));
-    throw InputError(text.where(draft.unit_line), "", "a unit of the values (the file states none: give it, as in unit = \"g\")",
+    throw InputError(text.where(draft.unit_line), "",
+                     "a unit of the values (the file states none: add one, as unit = \"g\" to its [[record]] or --unit g)",
                      fmt::format("numbers up to {:.4g} without a unit", most));
   }
   if (options.unit.empty()) return wanted_unit(draft.unit, text.where(draft.unit_line));

@@ -212,7 +212,7 @@ Results compare_case(const LoadedCase& loaded, const Control& control) {
   compared.sweep = sweep_table(sweep.specs, sweep.runs);
   results.floors = floor_answers(results.built.front().plan, results.runs, results.specs);
   results.verdict = judge(results.built.front(), results.runs.front(), bonded_of_group(results, 0), &results.floors.runs.front());
-  results.verdict.step_check.reason = "a comparison has no run with twice the step; `uplift run` has";
+  results.verdict.step_check.reason = "uplift compare makes no run with twice the step, uplift run does";
   results.verdict.headline += over.headline;
   if (!over.paragraph.empty()) results.verdict.paragraphs.insert(results.verdict.paragraphs.begin(), over.paragraph);
   add_motion_warnings(results);

@@ -32,8 +32,8 @@ std::string few_points(const Interface& interface, double uplifted, const Interf
   const double closed = (1 - uplifted) * interface.batch.points;
   if (interface.cone || interface.footprint || !(uplifted > 0) || uplifted >= 1 || closed >= enough) return "";
   return fmt::format(
-      "at the largest uplift of {} ({} of the area) about {:.2g} of its {} points are in contact: pressures and the last of the moment are "
-      "rough; take more points",
+      "at the largest uplift of {} ({} of the area) about {:.2g} of its {} points are in contact: the pressures and the last digits of "
+      "the moment are rough; take more points",
       said.name, percent(uplifted), closed, interface.batch.points);
 }
 

@@ -301,10 +301,9 @@ void say_residual(Verdict& verdict) {
       const VerdictNumber* left = find_number(said.numbers, name);
       if (!left) continue;
       const std::string swing = swing_text(*left);
-      verdict.facts.push_back(
-          {label + of_interface(verdict, said), text_of(*left),
-           swing.empty() ? "at rest" : fmt::format("mean of the last tenth of the run, remaining variation +-{}", swing), false,
-           format_step_change(*left)});
+      verdict.facts.push_back({label + of_interface(verdict, said), text_of(*left),
+                               swing.empty() ? "at rest" : fmt::format("mean of the last tenth of the run, remaining variation ±{}", swing),
+                               false, format_step_change(*left)});
     }
 }
 

@@ -126,7 +126,7 @@ TEST(Toml, HostileTexts) {
 
 // toml++ 3.3 asserts here.
 TEST(Toml, HeadersThatAreNone) {
-  EXPECT_EQ(error_of("a = 1\n\n[[[b]]]\nc = 2\n"), "case.toml:3: expected TOML, found brackets or characters that are none");
+  EXPECT_EQ(error_of("a = 1\n\n[[[b]]]\nc = 2\n"), "case.toml:3: expected TOML, found unbalanced brackets or invalid characters");
   for (const char* text : {"[[[1]]]", "[[=", "[=]", "[[[", "x = 1\n[ [a]]", "[#", "[[\n", "[\n]"})
     EXPECT_NE(error_of(text), "no error") << text;
   EXPECT_EQ(error_of("a = [\n[[1]]]\n"), "no error");

@@ -104,7 +104,7 @@ TEST(Checks, LoosePartsAreNamed) {
       support::refusal([&] { check_static(free_sliding()->finish()); }),
       "case.toml:7: expected a structure that stands when all its interfaces are closed, found a mechanism: \"base\", \"top\" can move "
       "along (1, 0) "
-      "without resistance");
+      "without resistance; hold it by a [[support]], a [[spring]] or K_t of an interface");
   auto held = free_sliding();
   held->fix(0, ux, here);
   EXPECT_NO_THROW(check_static(held->finish()));

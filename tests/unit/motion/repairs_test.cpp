@@ -74,9 +74,9 @@ TEST(RecordRefusals, Units) {
   EXPECT_EQ(refusal(replaced(ramp(sound), "OF G", "OF FURLONGS")), "file:3: expected a unit of motion: " + known + ", found \"FURLONGS\"");
   EXPECT_EQ(refusal(replaced(ramp(sound), "OF G", "OF CM/S")),
             "file:3: expected a unit of acceleration, which the file says it holds, found cm/s (of velocity)");
-  EXPECT_EQ(
-      refusal("0 0\n0.01 -0.5\n"),
-      "file: expected a unit of the values (the file states none: give it, as in unit = \"g\"), found numbers up to 0.5 without a unit");
+  EXPECT_EQ(refusal("0 0\n0.01 -0.5\n"),
+            "file: expected a unit of the values (the file states none: add one, as unit = \"g\" to its [[record]] or --unit g), found "
+            "numbers up to 0.5 without a unit");
   EXPECT_EQ(refusal("0 0\n0.01 -0.5\n", {.unit = "cm/s3"}),
             "unit: expected a unit of motion: " + known + ", found \"cm/s3\" (did you mean \"cm/s2\"?)");
   EXPECT_EQ(refusal(cosmos(tone(20, 9), 10, 0, "Uncorrected", "counts(50)").text),

@@ -61,6 +61,16 @@ void warn_damping(const std::optional<CaseDamping>& damping, std::vector<std::st
           fmt::format("a damping ratio of {:g} is {:g} % of the critical damping; 5 % are 0.05", ratio.value, 100 * ratio.value));
 }
 
+/// Positive upwards, where positive downwards is meant.
+void warn_upward_weight(const CaseInput& input, const BuiltCase& built, std::vector<std::string>& said) {
+  const std::optional<CaseGravity>& gravity = input.gravity;
+  if (!gravity || !(built.weight < 0) || input.interfaces.size() != 1) return;
+  if (input.interfaces.front().surface() || input.interfaces.front().water) return;  // see warn_sides_exchanged, warn_floating
+  said.push_back(place_of(*gravity->table, "acceleration") +
+                 fmt::format("the dead load pulls the base off the ground with {}; is the sign of the acceleration right?",
+                             format_quantity(-built.weight, "N")));
+}
+
 /// Lengths in other units, and masses in tonnes.
 void warn_size(const BuiltCase& built, std::vector<std::string>& said) {
   constexpr double smallest = 0.1, largest = 3000;  // m
@@ -116,6 +126,7 @@ void warn_input(const Case& read, const RunSpec& spec, const BuiltCase& built, s
   warn_friction(built, said);
   warn_cone(*read.input, said);
   warn_gravity(read.input->gravity, said);
+  warn_upward_weight(*read.input, built, said);
   warn_damping(read.input->damping, said);
   warn_size(built, said);
   warn_jumps(read, spec, built, said);

@@ -114,7 +114,7 @@ const Section& trust_section() {
              number("mesh_shift", "1", "the mesh around interface.cut is moved by this share of a cell, to both sides; 0: not moved")
                  .between(0, 0.45)
                  .standard(0.3),
-             number("spectrum_band", "1", "a floor spectrum speaks up to the frequency where its runs differ by more than this share")
+             number("spectrum_band", "1", "a floor spectrum is reliable up to the frequency where its runs differ by more than this share")
                  .positive()
                  .standard(0.1)}};
   return s;

@@ -115,13 +115,13 @@ std::vector<Chart> safety_charts(const std::vector<ReportRun>& runs) {
   const auto chart = [&](const char* id, const char* title, const char* caption, BaseHistory which) {
     return safety_chart(id, title, caption, which, runs);
   };
-  return {
-      chart("eccentricity", "Eccentricity of the resultant",
-            "Position of the resultant, divided by the width of the base; at 0.5 the base stands on its edge.", BaseHistory::eccentricity_1),
-      chart("overturning_safety", "Safety against overturning", "Stabilising over driving moment about the toe; drawn up to 10.",
-            BaseHistory::overturning_safety),
-      chart("sliding_safety", "Safety against sliding", "Friction and cohesion over base shear; drawn up to 10.",
-            BaseHistory::sliding_safety)};
+  return {chart("eccentricity", "Eccentricity of the resultant",
+                "Position of the resultant, divided by the width of the base; at 0.5 the base stands on its edge.",
+                BaseHistory::eccentricity_1),
+          chart("overturning_safety", "Safety against overturning", "Stabilising over driving moment about the toe; drawn up to 10.",
+                BaseHistory::overturning_safety),
+          chart("sliding_safety", "Safety against sliding", "Friction and cohesion over base shear; drawn up to 10.",
+                BaseHistory::sliding_safety)};
 }
 
 }  // namespace uplift

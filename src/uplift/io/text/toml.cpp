@@ -143,6 +143,16 @@ int lost_line(std::string_view text) {
   return 1 + static_cast<int>(std::partition_point(ends.begin(), ends.end(), fine) - ends.begin());
 }
 
+/// What most often causes a message of the parser; empty for others.
+std::string quotation_hint(const std::string& message) {
+  const auto has = [&](const char* part) { return message.find(part) != message.npos; };
+  if (has("parsing string") && has("control characters")) return " (is the closing quotation mark missing in this line?)";
+  for (const char* part : {"expected digit, saw", "expected a comment or whitespace, saw", "expected comma or closing", "parsing boolean",
+                           "could not determine value type"})
+    if (has(part)) return " (texts and values with a unit need quotation marks: \"top\", \"5 m\")";
+  return "";
+}
+
 }  // namespace
 
 Raw read_toml_text(std::string_view text, const std::string& file) {
@@ -160,9 +170,10 @@ Raw read_toml_text(std::string_view text, const std::string& file) {
   } catch (const toml::parse_error& error) {
     std::string found(error.description());  // "Error while parsing KIND: REASON"
     if (found.starts_with("Error")) found.replace(0, 1, "an e");
+    found += quotation_hint(found);
     throw InputError({file, static_cast<int>(error.source().begin.line), static_cast<int>(error.source().begin.column)}, "", "TOML", found);
   } catch (const ParserLost&) {
-    throw InputError({file, lost_line(text)}, "", "TOML", "brackets or characters that are none");
+    throw InputError({file, lost_line(text)}, "", "TOML", "unbalanced brackets or invalid characters");
   }
 }
 
