@@ -176,6 +176,19 @@ class BadInput(CliTest):
         text = BASE + '[compare]\nagree_on = ["top.uxx"]\n'
         self.refused(text, f'{{file}}:{line_of(text, "agree_on")}: compare.agree_on: expected the name of a column of the output, found "top.uxx" (did you mean "top.ux"?)')
 
+    def test_a_length_in_the_plane_is_refused(self):
+        text = """title = "block"
+[mesh.soil_box.soil]
+width = 8
+size = 2
+layers = [{ thickness = 4, size = 2 }]
+[mesh.soil_box.block]
+width = 2
+length = "3 m"
+height = 2
+"""
+        self.refused(text, f"{{file}}:{line_of(text, 'length')}: mesh.soil_box.block.length: expected no length in a mesh in the plane (a length of mesh.soil_box.soil makes it one in space), found 3 m")
+
     def test_variant_names_name_files(self):
         text = BASE + '[[variant]]\nname = "../a"\n'
         done = self.uplift("compare", self.write(text).name, expect=2)

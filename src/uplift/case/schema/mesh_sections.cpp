@@ -94,6 +94,10 @@ SoilBox soil_box_of(const Values& box) {
   made.soil.layers.clear();
   for (const Values& layer : soil.tables("layers")) made.soil.layers.push_back({layer.number("thickness"), layer.number("size")});
   if (made.soil.layers.empty()) fail(soil, "layers", "at least one layer", "none");
+  for (const char* part : {"raft", "block"})
+    if (const Values* table = table_if(box, part); table && table->has("length") && made.dimension == 2)
+      fail(*table, "length", "no length in a mesh in the plane (a length of mesh.soil_box.soil makes it one in space)",
+           fmt::format("{:g} m", table->number("length")));
   made.raft = part_from(table_if(box, "raft"));
   made.block = part_from(table_if(box, "block"));
   made.embedment = box.number("embedment");
