@@ -70,6 +70,21 @@ TEST(IdleInput, AMotionThatIsZeroInStaticStages) {
   EXPECT_FALSE(warns(footing + "[[motion]]\nnode = \"base\"\ndirection = \"uy\"\namplitude = -1e-3\n" + statics, "has no effect"));
 }
 
+TEST(IdleInput, AFunctionWhoseTimeIsOutsideTheRun) {
+  const auto shaken = [](const std::string& shape) {
+    return footing + weight + "[[function]]\nname = \"f\"\nshape = { " + shape +
+           " }\n[[ground_acceleration]]\nname = \"quake\"\ndirection = [1, 0]\namplitude = 3\nfunction = \"f\"\n" + statics + dynamics;
+  };
+  const std::string word = "the load \"quake\" is zero during all 0.100 s of the dynamic stages";
+  EXPECT_TRUE(warns(shaken("type = \"ricker\", frequency = 2, delay = 1000"), word));
+  EXPECT_TRUE(warns(shaken("type = \"half_sine\", duration = 0.1, start = -0.2"), word));
+  EXPECT_TRUE(warns(shaken("type = \"table\", times = [100, 101, 102], values = [0, 1, 0]"), word));
+  EXPECT_TRUE(warns(shaken("type = \"harmonic\", frequency = 2, start = 0.1"), word)) << "it begins when the run ends";
+  EXPECT_FALSE(warns(shaken("type = \"harmonic\", frequency = 2, start = 0.09"), "is zero during"));
+  EXPECT_FALSE(warns(shaken("type = \"half_sine\", duration = 0.1, start = -0.05"), "is zero during"));
+  EXPECT_FALSE(warns(shaken("type = \"harmonic\", frequency = 50"), "is zero during")) << "it is zero at every step of 0.01 s";
+}
+
 TEST(IdleInput, WeightThatComesSuddenly) {
   EXPECT_TRUE(warns(footing + weight + dynamics, "the weight acts suddenly at t = 0"));
   EXPECT_FALSE(warns(footing + weight + statics + dynamics, "suddenly"));

@@ -190,6 +190,25 @@ void warn_loads(const BuiltCase& built, std::vector<std::string>& said) {
   }
 }
 
+/// A function whose time lies outside the run, such as a delay counted from the beginning of a longer record, leaves the structure at rest.
+void warn_silent_loads(const BuiltCase& built, std::vector<std::string>& said) {
+  constexpr double nothing = 1e-12;                       // beside functions of the size of 1, and records in m/s2
+  constexpr double most_samples = 1e5, of_a_step = 0.37;  // no whole fraction: a sine may be zero at all steps
+  const Stage* stage = dynamic_stage(built.plan);
+  if (!stage) return;
+  const double duration = dynamic_duration(built.plan), step = std::max(of_a_step * stage->step, duration / most_samples);
+  for (const TimeLoad* time_load : varying_loads(built.model)) {
+    if (time_load->of_motion && time_load->order != TimeLoad::Order::value) continue;  // a support that stays where it is may be meant
+    bool silent = true;
+    for (long i = 0, count = static_cast<long>(duration / step); silent && i <= count; ++i)
+      silent = std::abs(time_load->factor(static_cast<double>(i) * step)) < nothing;
+    if (silent)
+      said.push_back(
+          fmt::format("the load \"{}\" is zero during all {} of the dynamic stages: the times of its function count from their beginning",
+                      time_load->name, format_quantity(duration, "s")));
+  }
+}
+
 /// Bases without mass follow the loads in balance; the trapezoidal rule gives them velocities that alternate.
 void warn_massless(const BuiltCase& built, std::vector<std::string>& said) {
   const Model& model = built.model;
@@ -328,6 +347,7 @@ std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const B
   warn_embedded_feet(built, said);
   warn_step(built, said);
   warn_loads(built, said);
+  warn_silent_loads(built, said);
   warn_massless(built, said);
   warn_stop(built, said);
   warn_floors(spec, built, said);
