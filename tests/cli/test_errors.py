@@ -1,5 +1,6 @@
 """Bad input: every mistake is refused before the first step, with the place, what was expected and what was found."""
 
+import math
 import resource
 
 from support import *
@@ -175,6 +176,14 @@ class BadInput(CliTest):
     def test_compared_columns_must_exist(self):
         text = BASE + '[compare]\nagree_on = ["top.uxx"]\n'
         self.refused(text, f'{{file}}:{line_of(text, "agree_on")}: compare.agree_on: expected the name of a column of the output, found "top.uxx" (did you mean "top.ux"?)')
+
+    def test_a_record_in_an_unlikely_unit_is_told(self):
+        for peak, unit, asked in ((0.3, "m/s2", "in g"), (3, "g", "in m/s2"), (300, "m/s2", "in cm/s2"), (3, "m/s2", ""), (0.3, "g", "")):
+            (self.folder / "a.txt").write_text("".join(f"{0.01 * i:.2f} {peak * math.sin(0.5 * i)}\n" for i in range(100)))
+            text = shaken("a.txt").replace('file = "a.txt"\n', f'file = "a.txt"\nunit = "{unit}"\n')
+            out = self.uplift("check", self.write(text).name).stdout
+            self.assertEqual(f"case.toml:{line_of(text, 'unit = ')}: in this unit the record" in out, asked != "", out)
+            self.assertIn(f"are its numbers {asked}?" if asked else "", out)
 
     def test_a_length_in_the_plane_is_refused(self):
         text = """title = "block"

@@ -9,9 +9,11 @@
 #include "uplift/base/format.h"
 #include "uplift/base/text.h"
 #include "uplift/case/build/model.h"
+#include "uplift/case/build/records.h"
 #include "uplift/elements/bulk_laws/drucker_prager.h"
 #include "uplift/laws/stated.h"
 #include "uplift/model/function_jumps.h"
+#include "uplift/motion/intensity.h"
 
 namespace uplift {
 namespace {
@@ -71,6 +73,27 @@ void warn_upward_weight(const CaseInput& input, const BuiltCase& built, std::vec
                              format_quantity(-built.weight, "N")));
 }
 
+/// Accelerations of a file whose unit the case states, and which are too small or too large for an earthquake in this unit.
+void warn_units_of_records(const Case& read, std::vector<std::string>& said) {
+  constexpr double weakest = 0.6, strongest = 25;  // m/s2
+  std::set<std::string> seen;
+  for (const DrivenBy& place : motions_wanted(read)) {
+    const auto source = std::ranges::find(read.input->records, place.function.name, [](const auto& each) { return each.name.name; });
+    const auto record = std::ranges::find(read.records, place.function.name, &CaseRecord::name);
+    if (source == read.input->records.end() || record == read.records.end()) continue;
+    if (!source->file || source->options.unit.empty() || place.kind != MotionKind::acceleration) continue;
+    if (record->motion().kind != MotionKind::acceleration || !seen.insert(place.function.name).second) continue;
+    double peak = 0;  // m/s2
+    for (const double value : record->motion().values) peak = std::max(peak, std::abs(place.factor * value));
+    if (peak <= 0 || (peak >= weakest && peak <= strongest)) continue;
+    const std::string stated = source->options.unit, other = peak < weakest ? "g" : stated == "g" || stated == "g_n" ? "m/s2" : "cm/s2";
+    said.push_back(place_of(*source->table, "unit") +
+                   fmt::format("in this unit the record {} reaches {}, {:.2g} g, which is {} for an earthquake; are its numbers in {}?",
+                               in_quotes(record->name), format_quantity(peak, "m/s2"), peak / standard_gravity,
+                               peak < weakest ? "little" : "much", other));
+  }
+}
+
 /// Lengths in other units, and masses in tonnes.
 void warn_size(const BuiltCase& built, std::vector<std::string>& said) {
   constexpr double smallest = 0.1, largest = 3000;  // m
@@ -128,6 +151,7 @@ void warn_input(const Case& read, const RunSpec& spec, const BuiltCase& built, s
   warn_gravity(read.input->gravity, said);
   warn_upward_weight(*read.input, built, said);
   warn_damping(read.input->damping, said);
+  warn_units_of_records(read, said);
   warn_size(built, said);
   warn_jumps(read, spec, built, said);
 }
