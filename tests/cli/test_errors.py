@@ -63,13 +63,22 @@ class BadInput(CliTest):
         done = self.uplift("check", self.write(text).name, expect=2)
         self.assertRegex(done.stderr, rf'^error: case\.toml:{line_of(text, "soil")}: .* \(is the closing quotation mark missing in this line\?\)$')
 
+    def test_what_toml_wants_is_said_where_it_is_known(self):
+        for old, new, wanted in (('name = "soil"\n', "name = 'soil\n", "is the closing quotation mark missing"), ("[0, -1e6]", "[0 -1e6]", "error"),
+                                 ('title = "test"\n', 'title = "test"\nbonded = False\n', "true and false are written in small letters")):
+            err = self.uplift("check", self.write(self.replace(old, new)).name, expect=2).stderr
+            self.assertIn(wanted, err)
+            self.assertEqual("need quotation marks" in err, False, err)
+
     def test_gravity_upwards(self):
-        """Mass of 24317 + 10000 kg, 336.6 kN; the static load of 1 MN in the other direction is left out."""
+        """The static load of 1 MN in the other direction is left out; a load that pulls is no mistake of gravity."""
         text = self.replace("force = [0, -1e6]", "force = [0, 0]") + "[gravity]\nacceleration = [0, 9.81]\n"
         self.write(text)
         done = self.uplift("check", "case.toml", expect=None)
-        self.assertIn(f"warning: case.toml:{line_of(text, 'acceleration')}: the dead load pulls the base off the ground with 337 kN; is the "
-                      "sign of the acceleration right?", done.stdout)
+        self.assertIn(f"warning: case.toml:{line_of(text, 'acceleration')}: gravity acts upwards, along +y, and presses no base onto "
+                      "the ground; is its sign right?", done.stdout)
+        self.write(self.replace("force = [0, -1e6]", "force = [0, 1e6]") + "[gravity]\nacceleration = [0, -9.81]\n")
+        self.assertNotIn("upwards", self.uplift("check", "case.toml", expect=None).stdout)
 
     def test_wrong_type(self):
         text = self.replace("points = 11", 'points = "many"')
@@ -178,7 +187,9 @@ class BadInput(CliTest):
         self.refused(text, f'{{file}}:{line_of(text, "agree_on")}: compare.agree_on: expected the name of a column of the output, found "top.uxx" (did you mean "top.ux"?)')
 
     def test_a_record_in_an_unlikely_unit_is_told(self):
-        for peak, unit, asked in ((0.3, "m/s2", "in g"), (3, "g", "in m/s2"), (300, "m/s2", "in cm/s2"), (3, "m/s2", ""), (0.3, "g", "")):
+        for peak, unit, asked in ((0.3, "m/s2", "in g"), (0.3, "cm/s2", "in g"), (3, "g", "in m/s2"), (3, "cm/s2", "in m/s2"),
+                                  (300, "m/s2", "in cm/s2"), (300, "g", "in cm/s2"), (3, "m/s2", ""), (0.3, "g", ""), (300, "cm/s2", ""),
+                                  (0.05, "g", ""), (50, "cm/s2", ""), (0.02, "m/s2", "")):
             (self.folder / "a.txt").write_text("".join(f"{0.01 * i:.2f} {peak * math.sin(0.5 * i)}\n" for i in range(100)))
             text = shaken("a.txt").replace('file = "a.txt"\n', f'file = "a.txt"\nunit = "{unit}"\n')
             out = self.uplift("check", self.write(text).name).stdout

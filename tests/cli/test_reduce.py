@@ -1,6 +1,9 @@
 """Reduced models: made, used, stated on every result, refused for another structure."""
 
 import math
+import signal
+import subprocess
+import time
 
 from support import *
 
@@ -60,9 +63,26 @@ class Reduce(CliTest):
         for words, wanted in ((["--model", "later.rom"], "requires --controls"), (["--model", "later.rom", "--controls", "1", "--size", "3"], "--model excludes --size"),
                               (["--model", "no.rom", "--controls", "1"], "no file"), (["--model", "case.toml", "--controls", "1"], "`uplift reduce` has written")):
             self.assertIn(wanted, self.uplift("reduce", "case.toml", *words, expect=2).stderr)
+        self.assertIn("at least one run", self.uplift("reduce", "case.toml", "--model", "later.rom", "--controls", "0", expect=2).stderr)
         self.write(BASE.replace("mass = 24317", "mass = 24318"))
         err = self.uplift("reduce", "case.toml", "--model", "later.rom", "--controls", "1", expect=2).stderr
+        self.assertIn("uplift reduce: --model: expected the reduced model of this structure", err)
         self.assertIn("have changed since `uplift reduce`", err)
+
+    def test_an_interruption_of_control_runs_leaves_the_model(self):
+        self.write(BASE)
+        path = self.folder / "case.rom"
+        with subprocess.Popen([program(), "reduce", "case.toml", "--size", "3", "--controls", "10000", "-o", "case.rom"], cwd=self.folder,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+            while not path.exists() and running.poll() is None:
+                time.sleep(0.02)  # it is written before the control runs begin
+            running.send_signal(signal.SIGINT)
+            _, err = running.communicate(timeout=120)
+        self.assertEqual(running.returncode, 130)
+        self.assertRegex(err, r"interrupted: case\.rom states \d+ control runs; uplift reduce case\.toml --model case\.rom --controls 10000 makes all of them")
+        self.assertFalse((self.folder / "case.rom.1").exists())
+        self.write(USES)
+        self.assertIn("reduced model case.rom: 3 coordinates", self.uplift("run", "case.toml", "-o", "r").stderr)
 
     def test_is_refused_with_a_sentence(self):
         self.write(USES)

@@ -106,10 +106,26 @@ void print(const Study& study, const Forecast& forecast) {
   line("disk", format_bytes(forecast.disk()));
 }
 
-/// Runs as a worker of the study computes them, in a process of its own; the results of those before it ended.
+/// Processor time [s] of a process, or of those of its children that have ended: unlike the elapsed time it does not depend on what else
+/// the machine does.
+double processor_time(int whose) {
+  rusage usage{};
+  ::getrusage(whose, &usage);
+  const auto seconds = [](const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+/// Runs as a worker of the study computes them, in a process of its own; the results of those before it ended. Their times are what each
+/// took of the processor.
 std::vector<StudyResult> compute_in_worker(const Study& study, StudyComputer& computer, const std::vector<RunRequest>& runs) {
-  WorkerPool pool(1, {std::nullopt, study.of.plan.memory},
-                  [&](const std::vector<RunRequest>& batch, const auto& done) { computer.compute(batch, done); });
+  WorkerPool pool(1, {std::nullopt, study.of.plan.memory}, [&](const std::vector<RunRequest>& batch, const auto& done) {
+    double last = processor_time(RUSAGE_SELF);
+    computer.compute(batch, [&](StudyResult result) {
+      const double now = processor_time(RUSAGE_SELF);
+      result.wall = now - std::exchange(last, now);
+      done(result);
+    });
+  });
   pool.send(0, runs);
   std::vector<StudyResult> results;
   while (results.size() < runs.size()) {
@@ -128,14 +144,6 @@ double largest_memory() {
   rusage usage{};
   ::getrusage(RUSAGE_CHILDREN, &usage);
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
-}
-
-/// Processor time [s] of the workers that have ended: unlike the elapsed time it does not depend on what else the machine does.
-double worker_time() {
-  rusage usage{};
-  ::getrusage(RUSAGE_CHILDREN, &usage);
-  const auto seconds = [](const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
 std::vector<RunRequest> group_of(const Study& study, const RunRequest& trial, std::size_t runs) {
@@ -168,9 +176,9 @@ double seconds_of(const Study& study, StudyComputer& computer, const RunRequest&
   constexpr double short_run = 0.1;  // s
   constexpr std::size_t further = 10;
   if (alone > short_run) return alone;
-  const double before = worker_time();
+  const double before = processor_time(RUSAGE_CHILDREN);
   compute_in_worker(study, computer, group_of(study, trial, further + 1));
-  const double all = worker_time() - before;
+  const double all = processor_time(RUSAGE_CHILDREN) - before;
   return std::max(all - alone, 0.1 * all) / further;
 }
 
@@ -198,14 +206,14 @@ int check_study(const Options& options) {
   RunRequest request{"trial", 0, curves.front().sample(), curves.front().motion(), 1, start, 1};
   request.factor = cloud ? start : start / study.of.motions[request.motion].intensity;
   const std::size_t together = group_size(study, computer, request, status);
-  const double before = worker_time();
+  const double before = processor_time(RUSAGE_CHILDREN);
   const std::vector<StudyResult> trials =
       compute_in_worker(study, computer, study.reduced ? group_of(study, request, 2) : std::vector{request});
   const StudyResult& trial = trials.front();
-  const double all = worker_time() - before;
+  const double all = processor_time(RUSAGE_CHILDREN) - before;
   // a reduced model is begun once for all motions of a sample: the second run tells what the others take
   const bool told = study.reduced && trials.size() == 2;
-  const double seconds = told ? std::min(trials.back().wall, all) : seconds_of(study, computer, request, all);
+  const double seconds = told ? trials.back().wall : seconds_of(study, computer, request, all);
   const double memory = together == 1 ? largest_memory() : memory_of_group(study, computer, request, together);
   const Case read = case_of_sample(study.of, 0);
   const RunSpec spec = run_of_study(study.of, read, 0, 1);
@@ -214,7 +222,7 @@ int check_study(const Options& options) {
                           seconds,
                           memory,
                           static_cast<double>(line_of(trial).size()),
-                          told ? std::max(0.0, all - 2 * seconds) : 0,
+                          told ? std::max(0.0, trials.front().wall - seconds) : 0,
                           study.of.samples.size(),
                           together};
   const std::vector<std::string> said = warnings_of(study, built, spec, read, trial);

@@ -59,10 +59,14 @@ class JointLaw final : public InterfaceLaw {
   void filter(const Batch& batch, const double* from, const double* to, const LawResponse& part) const {
     const double *coefficient = batch.coefficient + batch.normal(), *lag = batch.lag + batch.normal();
     const bool tension = normal_->carries_tension();
+    const double per_step = batch.step > 0 ? normal_->dashpot() / batch.step : 0;  // c/step [Pa/m]
     for (int i = 0; i < batch.points; ++i) {
       double value = part.traction[i], slope = part.slope != nullptr ? part.slope[i] : 0;
       part.plain[i] = value;
-      filter_normal(value, slope, part.end[i], 2 * part.next[i], to[i] - from[i], coefficient[i], lag[i], tension, false);
+      double end = part.end[i], end_slope = 2 * part.next[i];
+      // a dashpot brakes from the contact on: its mean over the step is c/step to, its force at the end c/step (to - from)
+      if (from[i] > 0 && to[i] < 0) end += per_step * from[i], end_slope -= per_step;
+      filter_normal(value, slope, end, end_slope, to[i] - from[i], coefficient[i], lag[i], tension, false);
       part.traction[i] = value;
       if (part.slope != nullptr) part.slope[i] = slope;
     }

@@ -47,6 +47,8 @@ class NormalLaw {
   virtual void energy(const Batch&, const double* opening, const double* history, double* stored, double* dissipated) const = 0;
   /// Stiffness in compression [Pa/m].
   virtual double stiffness() const = 0;
+  /// Coefficient of the dashpot that acts while the faces are in contact [Pa s/m].
+  virtual double dashpot() const { return 0; }
   virtual LawScales scales() const { return {}; }
   virtual std::optional<EquivalentLaw> equivalent() const { return {}; }
   /// False where the traction is never positive.

@@ -49,6 +49,7 @@ class Springs final : public NormalLaw {
   Springs(double stiffness, double damping) : stiffness_(stiffness), damping_(damping) {}
   int num_history() const override { return damping_ > 0 ? 1 : 0; }
   double stiffness() const override { return stiffness_; }
+  double dashpot() const override { return damping_; }
   bool carries_tension() const override { return false; }
   /// The SDM without strength, whose closure stress is far below what a base bears at rest; it has no dashpot.
   std::optional<EquivalentLaw> equivalent() const override {

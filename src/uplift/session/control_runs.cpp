@@ -47,7 +47,7 @@ class ControlRuns {
       : loaded_(loaded), reduced_(reduced), control_(control) {}
 
   /// How many whole runs are best made together.
-  std::size_t together(const DrawnMotion& one) const { return build(one).model.free() >= large_model ? most_in_lockstep : 1; }
+  std::size_t together() const { return reduced_.vectors.rows() >= large_model ? most_in_lockstep : 1; }
 
   std::vector<ControlRun> whole(std::span<const DrawnMotion> group, const std::string& label) const {
     const Watch watch = watch_of(label);
@@ -191,7 +191,7 @@ ControlErrors control_errors(const LoadedCase& loaded, const ReducedModel& reduc
   ControlErrors errors;
   const std::vector<DrawnMotion> drawn = draw_motions(loaded, options, errors);
   ControlRuns runs(loaded, reduced, control);
-  const std::size_t most = runs.together(drawn.front());
+  const std::size_t most = runs.together();
   for (std::size_t first = 0; first < drawn.size();) {
     const std::size_t count = std::min(most, drawn.size() - first);
     const std::string of = fmt::format(" of {}", drawn.size());

@@ -108,14 +108,14 @@ std::optional<ReducedModel> reduce_case(const LoadedCase& loaded, const ReduceOp
     make_whole(built.model);
     if (options.model) {
       *reduced = *options.model;
-      refuse_reduced(*reduced, where, built);
+      refuse_reduced(*reduced, {"uplift reduce", 0}, built, "--model");
     } else {
       refuse(built, where);
       TrainingOptions training{.frequency = options.frequency, .size = options.size, .target = options.target};
       training.floors = floor_unknowns(built);
       training.loads_floors = !built.plan.floors.empty();
-      if (const Watch watch = control.watch ? control.watch("basis") : Watch(); watch)
-        training.go_on = [watch](double share) { return watch({.fraction = share}); };
+      const Watch watch = control.watch ? control.watch("basis") : Watch();
+      training.go_on = [&](double share) { return watch ? watch({.fraction = share}) : !control.is_stopped(); };
       Basis basis = train(built.model, *built.plan.solver, training);
       if (control.is_stopped()) return {};
       if (!basis.why.empty()) throw InputError(where, "", "a structure with a reduced model", basis.why);
@@ -129,8 +129,11 @@ std::optional<ReducedModel> reduce_case(const LoadedCase& loaded, const ReduceOp
       reduced->vectors = std::move(basis.vectors);
     }
   }
-  if (options.controls > 0)
-    if (ControlErrors errors = control_errors(loaded, *reduced, options, control); errors.runs > 0) reduced->controls = std::move(errors);
+  if (options.controls > 0) {
+    ControlErrors errors = control_errors(loaded, *reduced, options, control);
+    const int before = reduced->controls ? reduced->controls->runs : 0;  // more runs than those of an interruption say more
+    if (errors.runs == options.controls || errors.runs > before) reduced->controls = std::move(errors);
+  }
   return reduced;
 }
 
@@ -147,13 +150,13 @@ std::shared_ptr<const ReducedModel> read_reduced_model_of(const Values& root) {
   return std::make_shared<const ReducedModel>(read_reduced_model_file(path.string(), root.where(key), key));
 }
 
-void refuse_reduced(const ReducedModel& reduced, const Where& where, const BuiltCase& built) {
+void refuse_reduced(const ReducedModel& reduced, const Where& where, const BuiltCase& built, const std::string& name) {
   refuse(built, where);
   if (matrices_hash(built.model) != reduced.matrices)
-    throw InputError(where, key, "the reduced model of this structure",
+    throw InputError(where, name, "the reduced model of this structure",
                      "that of another one: its stiffness, mass, damping, absorbing faces or mesh have changed since `uplift reduce`");
   if (const std::string load = load_outside(built.model, reduced.loads); !load.empty())
-    throw InputError(where, key, "a reduced model that was made with all loads of the case; only their size and course in time may change",
+    throw InputError(where, name, "a reduced model that was made with all loads of the case; only their size and course in time may change",
                      "one that does not represent the answer to the load " + in_quotes(load) + ": make it anew with `uplift reduce`");
 }
 

@@ -31,8 +31,9 @@ ReducedModel read_reduced_model_file(const std::string& path, const Where& where
 /// Reads the reduced model that a case names. Throws InputError.
 std::shared_ptr<const ReducedModel> read_reduced_model_of(const Values& root);
 
-/// Throws InputError where the reduced model belongs to another structure, or does not represent what the case has.
-void refuse_reduced(const ReducedModel& reduced, const Where& where, const BuiltCase& built);
+/// Throws InputError where the reduced model, which `name` at `where` names, belongs to another structure, or does not represent what the
+/// case has.
+void refuse_reduced(const ReducedModel& reduced, const Where& where, const BuiltCase& built, const std::string& name = "reduced_model");
 
 /// What runs of a case with a reduced model share that differ by their motions alone: the state in which the static stages end, and the
 /// projected matrices.

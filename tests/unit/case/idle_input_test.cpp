@@ -82,6 +82,7 @@ TEST(IdleInput, AFunctionWhoseTimeIsOutsideTheRun) {
   EXPECT_TRUE(warns(shaken("type = \"harmonic\", frequency = 2, start = 0.1"), word)) << "it begins when the run ends";
   EXPECT_FALSE(warns(shaken("type = \"harmonic\", frequency = 2, start = 0.09"), "is zero during"));
   EXPECT_FALSE(warns(shaken("type = \"half_sine\", duration = 0.1, start = -0.05"), "is zero during"));
+  EXPECT_FALSE(warns(shaken("type = \"half_sine\", duration = 3e-4, start = 0.04985"), "is zero during")) << "it acts on one step alone";
   EXPECT_FALSE(warns(shaken("type = \"harmonic\", frequency = 50"), "is zero during")) << "it is zero at every step of 0.01 s";
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <random>
 
 #include "uplift/reduction/projection.h"
@@ -105,6 +106,37 @@ TEST(ControlRuns, StateTheErrorsOfSingleRunsWhereWholeModelsMarchSideBySide) {
   expect_errors_of_single_runs(loaded, 3);
 }
 
+// Pairs of runs of different motions would be apart by as much as the motions, which differ by a factor of up to three.
+TEST(ControlRuns, SideBySideAreComparedWithTheirOwnReducedRuns) {
+  const LoadedCase loaded = block_on_soil(0.25);
+  const std::optional<ReducedModel> made = reduce_case(loaded, {.size = 120}, {});
+  ASSERT_TRUE(made);
+  const ControlErrors errors =
+      control_errors(loaded, *made, {.controls = static_cast<int>(most_in_lockstep) + 1, .least_scale = 0.5, .most_scale = 1.5}, {});
+  EXPECT_EQ(errors.runs, 17);
+  EXPECT_EQ(errors.different, 0);
+  EXPECT_LT(errors.opening, 0.05);
+  EXPECT_LT(errors.moment, 0.05);
+  EXPECT_LT(errors.history, 0.05);
+}
+
+TEST(ControlRuns, ThatAreInterruptedSideBySideLeaveTheModel) {
+  const LoadedCase loaded = block_on_soil(0.25);
+  bool stopped = false;
+  Control control;
+  control.stopped = [&] { return stopped; };
+  control.watch = [&](const std::string& label) -> Watch {
+    if (label.starts_with("control runs 1 to 2 of 2")) stopped = true;
+    return [&](const Progress&) { return !stopped; };
+  };
+  ReduceOptions options{.controls = 2};
+  options.model = std::make_shared<const ReducedModel>(random_basis(built_of(loaded).model, 20));
+  const std::optional<ReducedModel> made = reduce_case(loaded, options, control);
+  EXPECT_TRUE(stopped);
+  ASSERT_TRUE(made);
+  EXPECT_FALSE(made->controls);
+}
+
 TEST(ControlRuns, OfAGivenModelAreThoseMadeWithIt) {
   const LoadedCase loaded = block_on_soil(2);
   const ReduceOptions options{.size = 30, .controls = 2};
@@ -135,6 +167,17 @@ TEST(ControlRuns, ThatAreInterruptedLeaveTheModelAndTheErrorsOfTheRunsThatWereMa
     EXPECT_EQ(made->vectors.cols(), 30);
     ASSERT_EQ(made->controls.has_value(), stop_in > 1);
     if (stop_in > 1) EXPECT_EQ(made->controls->runs, stop_in - 1);
+    // what was stated before by more runs stays
+    if (stop_in > 1) {
+      stopped = false;
+      ReduceOptions more{.controls = 59};
+      more.model = std::make_shared<const ReducedModel>(*made);
+      control.watch = [&](const std::string& label) -> Watch {
+        if (label.starts_with("control run 2 of")) stopped = true;
+        return [&](const Progress&) { return !stopped; };
+      };
+      EXPECT_EQ(reduce_case(loaded, more, control)->controls->runs, stop_in - 1);
+    }
   }
 }
 

@@ -13,6 +13,7 @@
 #include "uplift/elements/bulk_laws/drucker_prager.h"
 #include "uplift/laws/stated.h"
 #include "uplift/model/function_jumps.h"
+#include "uplift/motion/formats/record_format.h"
 #include "uplift/motion/intensity.h"
 
 namespace uplift {
@@ -64,33 +65,35 @@ void warn_damping(const std::optional<CaseDamping>& damping, std::vector<std::st
 }
 
 /// Positive upwards, where positive downwards is meant.
-void warn_upward_weight(const CaseInput& input, const BuiltCase& built, std::vector<std::string>& said) {
+void warn_upward_gravity(const CaseInput& input, const BuiltCase& built, std::vector<std::string>& said) {
   const std::optional<CaseGravity>& gravity = input.gravity;
-  if (!gravity || !(built.weight < 0) || input.interfaces.size() != 1) return;
-  if (input.interfaces.front().surface() || input.interfaces.front().water) return;  // see warn_sides_exchanged, warn_floating
-  said.push_back(place_of(*gravity->table, "acceleration") +
-                 fmt::format("the dead load pulls the base off the ground with {}; is the sign of the acceleration right?",
-                             format_quantity(-built.weight, "N")));
+  const int up = input.space.dimension - 1;
+  if (!gravity || !(gravity->acceleration[up] > 0) || built.weight > 0 || input.interfaces.empty()) return;
+  said.push_back(
+      place_of(*gravity->table, "acceleration") +
+      fmt::format("gravity acts upwards, along +{}, and presses no base onto the ground; is its sign right?", up == 1 ? "y" : "z"));
 }
 
-/// Accelerations of a file whose unit the case states, and which are too small or too large for an earthquake in this unit.
+/// Accelerations of a file that are no earthquake in the unit that the case states, and would be one in another unit.
 void warn_units_of_records(const Case& read, std::vector<std::string>& said) {
   constexpr double weakest = 0.6, strongest = 25;  // m/s2
-  std::set<std::string> seen;
-  for (const DrivenBy& place : motions_wanted(read)) {
-    const auto source = std::ranges::find(read.input->records, place.function.name, [](const auto& each) { return each.name.name; });
-    const auto record = std::ranges::find(read.records, place.function.name, &CaseRecord::name);
-    if (source == read.input->records.end() || record == read.records.end()) continue;
-    if (!source->file || source->options.unit.empty() || place.kind != MotionKind::acceleration) continue;
-    if (record->motion().kind != MotionKind::acceleration || !seen.insert(place.function.name).second) continue;
+  const auto is_earthquake = [](double peak) { return peak >= weakest && peak <= strongest; };
+  for (const CaseRecordSource& source : read.input->records) {
+    const std::optional<MotionUnit> stated = motion_unit(source.options.unit);
+    const auto record = std::ranges::find(read.records, source.name.name, &CaseRecord::name);
+    if (!source.file || !source.processes.empty() || !stated || stated->kind != MotionKind::acceleration || record == read.records.end())
+      continue;
     double peak = 0;  // m/s2
-    for (const double value : record->motion().values) peak = std::max(peak, std::abs(place.factor * value));
-    if (peak <= 0 || (peak >= weakest && peak <= strongest)) continue;
-    const std::string stated = source->options.unit, other = peak < weakest ? "g" : stated == "g" || stated == "g_n" ? "m/s2" : "cm/s2";
-    said.push_back(place_of(*source->table, "unit") +
-                   fmt::format("in this unit the record {} reaches {}, {:.2g} g, which is {} for an earthquake; are its numbers in {}?",
-                               in_quotes(record->name), format_quantity(peak, "m/s2"), peak / standard_gravity,
-                               peak < weakest ? "little" : "much", other));
+    for (const double value : record->motion().values) peak = std::max(peak, std::abs(value));
+    if (is_earthquake(peak)) continue;
+    for (const std::string_view unit : {"g", "m/s2", "cm/s2"})
+      if (is_earthquake(peak / stated->factor * motion_unit(unit)->factor)) {
+        said.push_back(place_of(*source.table, "unit") +
+                       fmt::format("in this unit the record {} reaches {}, {:.3g} g, which is {} for an earthquake; are its numbers in {}?",
+                                   in_quotes(source.name.name), format_quantity(peak, "m/s2"), peak / standard_gravity,
+                                   peak < weakest ? "low" : "high", unit));
+        break;
+      }
   }
 }
 
@@ -149,7 +152,7 @@ void warn_input(const Case& read, const RunSpec& spec, const BuiltCase& built, s
   warn_friction(built, said);
   warn_cone(*read.input, said);
   warn_gravity(read.input->gravity, said);
-  warn_upward_weight(*read.input, built, said);
+  warn_upward_gravity(*read.input, built, said);
   warn_damping(read.input->damping, said);
   warn_units_of_records(read, said);
   warn_size(built, said);

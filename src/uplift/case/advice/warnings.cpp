@@ -192,19 +192,23 @@ void warn_loads(const BuiltCase& built, std::vector<std::string>& said) {
 
 /// A function whose time lies outside the run, such as a delay counted from the beginning of a longer record, leaves the structure at rest.
 void warn_silent_loads(const BuiltCase& built, std::vector<std::string>& said) {
-  constexpr double nothing = 1e-12;                       // beside functions of the size of 1, and records in m/s2
-  constexpr double most_samples = 1e5, of_a_step = 0.37;  // no whole fraction: a sine may be zero at all steps
+  constexpr double nothing = 1e-12;                     // beside functions of the size of 1, and records in m/s2
+  constexpr double most_steps = 1e7, of_a_step = 0.37;  // no whole fraction: a sine may be zero at all steps
   const Stage* stage = dynamic_stage(built.plan);
-  if (!stage) return;
-  const double duration = dynamic_duration(built.plan), step = std::max(of_a_step * stage->step, duration / most_samples);
+  const double duration = stage ? dynamic_duration(built.plan) : 0;
+  if (!stage || duration > most_steps * stage->step) return;
   for (const TimeLoad* time_load : varying_loads(built.model)) {
     if (time_load->of_motion && time_load->order != TimeLoad::Order::value) continue;  // a support that stays where it is may be meant
+    const auto is_zero = [&](double time) { return std::abs(time_load->factor(time)) < nothing; };
     bool silent = true;
-    for (long i = 0, count = static_cast<long>(duration / step); silent && i <= count; ++i)
-      silent = std::abs(time_load->factor(static_cast<double>(i) * step)) < nothing;
+    for (long i = 0, count = std::lround(duration / stage->step); silent && i <= count; ++i) {
+      const auto step = static_cast<double>(i);
+      silent = is_zero(step * stage->step) && (i == count || is_zero((step + of_a_step) * stage->step));
+    }
     if (silent)
       said.push_back(
-          fmt::format("the load \"{}\" is zero during all {} of the dynamic stages: the times of its function count from their beginning",
+          fmt::format("the load \"{}\" is zero during all {} of the dynamic stages: the times of its function count from their beginning, "
+                      "or it is zero everywhere",
                       time_load->name, format_quantity(duration, "s")));
   }
 }

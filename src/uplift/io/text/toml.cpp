@@ -146,9 +146,10 @@ int lost_line(std::string_view text) {
 /// What most often causes a message of the parser; empty for others.
 std::string quotation_hint(const std::string& message) {
   const auto has = [&](const char* part) { return message.find(part) != message.npos; };
-  if (has("parsing string") && has("control characters")) return " (is the closing quotation mark missing in this line?)";
-  for (const char* part : {"expected digit, saw", "expected a comment or whitespace, saw", "expected comma or closing", "parsing boolean",
-                           "could not determine value type"})
+  if ((has("parsing string") || has("literal string")) && has("control characters"))
+    return " (is the closing quotation mark missing in this line?)";
+  if (has("parsing boolean")) return " (true and false are written in small letters)";
+  for (const char* part : {"expected digit, saw", "expected a comment or whitespace, saw", "could not determine value type"})
     if (has(part)) return " (texts and values with a unit need quotation marks: \"top\", \"5 m\")";
   return "";
 }
