@@ -69,6 +69,14 @@ class Reduce(CliTest):
         self.assertIn("uplift reduce: --model: expected the reduced model of this structure", err)
         self.assertIn("have changed since `uplift reduce`", err)
 
+    def test_a_place_that_is_no_file_is_told_before_the_work(self):
+        self.write(BASE)
+        (self.folder / "folder.rom").mkdir()
+        done = self.uplift("reduce", "case.toml", "--size", "3", "-o", "folder.rom", expect=4)
+        self.assertIn("folder.rom: this is not a file that can be replaced", done.stderr)
+        self.assertNotIn("basis", done.stderr)
+        self.assertTrue((self.folder / "folder.rom").is_dir())
+
     def test_an_interruption_of_control_runs_leaves_the_model(self):
         self.write(BASE)
         path = self.folder / "case.rom"

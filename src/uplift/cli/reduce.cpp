@@ -18,7 +18,6 @@ namespace {
 /// What stood at a path goes to PATH.1, PATH.2, ...
 void move_away(const std::string& path, bool quiet) {
   if (!fs::exists(path)) return;
-  if (!fs::is_regular_file(path)) throw OutputError(path + ": this is no file that can be replaced");
   int number = 1;
   while (fs::exists(fmt::format("{}.{}", path, number))) ++number;
   const std::string to = fmt::format("{}.{}", path, number);
@@ -29,7 +28,10 @@ void move_away(const std::string& path, bool quiet) {
 /// Where a reduced model is written, which may be done twice: before the control runs and after them.
 class ModelFile {
  public:
-  ModelFile(std::string path, bool quiet) : path_(std::move(path)), quiet_(quiet) {}
+  /// What cannot be written there is told before anything is computed.
+  ModelFile(std::string path, bool quiet) : path_(std::move(path)), quiet_(quiet) {
+    if (fs::exists(path_) && !fs::is_regular_file(path_)) throw OutputError(path_ + ": this is not a file that can be replaced");
+  }
   const std::string& path() const { return path_; }
   void write(const ReducedModel& reduced) {
     try {
