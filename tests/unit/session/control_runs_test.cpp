@@ -6,8 +6,8 @@
 
 #include <cmath>
 #include <memory>
-#include <random>
 
+#include "unit/session/reduced_support.h"
 #include "uplift/reduction/projection.h"
 #include "uplift/run/lockstep.h"
 #include "uplift/session/steps.h"
@@ -39,29 +39,7 @@ BuiltCase built_of(const LoadedCase& read) {
   return build_run(read, spec);
 }
 
-ReducedModel without_basis(const Model& model) {
-  ReducedModel reduced;
-  reduced.matrices = matrices_hash(model);
-  reduced.loads = orthonormal_loads(model);
-  reduced.frequency = 25;
-  reduced.energy_frequency = 60;
-  reduced.vectors.resize(model.free(), 0);
-  return reduced;
-}
-
-/// A few random shapes: runs with them are far from those of the whole model.
-ReducedModel random_basis(const Model& model, Index size) {
-  ReducedModel reduced = without_basis(model);
-  const EnergyProduct product(model.stiffness, model.mass, reduced.energy_frequency);
-  std::mt19937 random(1);
-  std::normal_distribution<double> normal;
-  while (reduced.vectors.cols() < size) {
-    Vector x(model.free());
-    for (double& value : x) value = normal(random);
-    append(product, x, 1e-8, reduced.vectors);
-  }
-  return reduced;
-}
+constexpr double w = 60;  // rad/s
 
 /// Displacements of runs under five multiples of the motion: other multiples move the reduced model as they do the whole one.
 ReducedModel basis_of_runs(double size) {
@@ -69,7 +47,7 @@ ReducedModel basis_of_runs(double size) {
   for (const double amplitude : {4, 6, 8, 10, 12}) {
     const LoadedCase loaded = block_on_soil(size, amplitude);
     const BuiltCase built = built_of(loaded);
-    if (!reduced) reduced = without_basis(built.model);
+    if (!reduced) reduced = support::without_basis(built.model, w);
     const EnergyProduct product(built.model.stiffness, built.model.mass, reduced->energy_frequency);
     run(built.model, built.plan, built.behaviours, {}, [&](const Snapshot& at) {
       if (at.step % 3 == 0) append(product, at.state.displacement, 1e-8, reduced->vectors);
@@ -92,19 +70,9 @@ Peaks whole_peaks(const LoadedCase& loaded) {
   return peaks(run(built.model, built.plan, built.behaviours));
 }
 
-Peaks reduced_peaks(const LoadedCase& loaded, const ReducedModel& reduced) {
-  BuiltCase built = built_of(loaded);
-  RunResult result;
-  const std::optional<RunState> begin = begin_reduced(reduced, {}, built, {}, result);
-  EXPECT_TRUE(begin) << result.reason;
-  Keeping keeping;
-  keeping.from = &*begin;
-  return peaks(run(built.model, built.plan, built.behaviours, {}, {}, &keeping));
-}
-
 void expect_errors_of_single_runs(const LoadedCase& loaded, int controls) {
-  const ReducedModel basis = random_basis(built_of(loaded).model, 20);
-  const Peaks whole = whole_peaks(loaded), reduced = reduced_peaks(loaded, basis);
+  const ReducedModel basis = support::random_basis(built_of(loaded).model, w, 20, 1);
+  const Peaks whole = whole_peaks(loaded), reduced = peaks(support::run_reduced(built_of(loaded), basis));
   const double opening = std::abs(reduced.opening / whole.opening - 1), moment = std::abs(reduced.moment / whole.moment - 1);
   EXPECT_GT(opening, 0.01);
   const ControlErrors errors = control_errors(loaded, basis, {.controls = controls, .least_scale = 1, .most_scale = 1}, {});
@@ -148,7 +116,7 @@ TEST(ControlRuns, ThatAreInterruptedSideBySideLeaveTheModel) {
     return [&](const Progress&) { return !stopped; };
   };
   ReduceOptions options{.controls = 2};
-  options.model = std::make_shared<const ReducedModel>(random_basis(built_of(loaded).model, 20));
+  options.model = std::make_shared<const ReducedModel>(support::random_basis(built_of(loaded).model, w, 20, 1));
   const std::optional<ReducedModel> made = reduce_case(loaded, options, control);
   EXPECT_TRUE(stopped);
   ASSERT_TRUE(made);

@@ -12,6 +12,7 @@
 #include <random>
 #include <utility>
 
+#include "unit/session/reduced_support.h"
 #include "uplift/dynamics/bulk.h"
 #include "uplift/math/dense.h"
 #include "uplift/model/wave_functions.h"
@@ -52,32 +53,12 @@ BuiltCase built_of(const LoadedCase& read) {
 
 constexpr double w = 60;  // rad/s
 
-/// Random vectors, orthonormal in the energy product.
 ReducedModel random_basis(const Model& model, Index size, unsigned seed) {
-  const EnergyProduct product(model.stiffness, model.mass, w);
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
-  ReducedModel reduced;
-  reduced.matrices = matrices_hash(model);
-  reduced.loads = orthonormal_loads(model);
-  reduced.energy_frequency = w;
-  reduced.vectors.resize(model.free(), 0);
-  while (reduced.vectors.cols() < size) {
-    Vector x(model.free());
-    for (double& value : x) value = normal(random);
-    append(product, x, 1e-8, reduced.vectors);
-  }
-  return reduced;
+  return support::random_basis(model, w, size, seed);
 }
 
 RunResult run_reduced(const LoadedCase& read, const ReducedModel& reduced) {
-  BuiltCase built = built_of(read);
-  RunResult result;
-  const std::optional<RunState> begin = begin_reduced(reduced, {}, built, {}, result);
-  EXPECT_TRUE(begin) << result.reason;
-  Keeping keeping;
-  keeping.from = &*begin;
-  return run(built.model, built.plan, built.behaviours, {}, {}, &keeping);
+  return support::run_reduced(built_of(read), reduced);
 }
 
 double largest(const std::vector<double>& values) {
