@@ -99,7 +99,7 @@ void print(const LoadedCase& loaded, const CheckedCase& checked) {
   line("histories", fmt::format("{:.0f} rows x {:.0f} columns per run: {} in memory, about {} on disk", found.histories.rows,
                                 found.histories.columns, format_bytes(found.histories.memory), format_bytes(found.histories.disk)));
   if (found.record_bytes > 0)
-    line("floor spectra", fmt::format("{} at every step: {} a run",
+    line("floor spectra", fmt::format("{} at every step: {} per run",
                                       built.plan.floors.size() == 1 ? "one record" : fmt::format("{} records", built.plan.floors.size()),
                                       format_bytes(found.record_bytes)));
   if (found.fields) {

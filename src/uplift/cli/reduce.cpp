@@ -100,7 +100,7 @@ int reduce(const Options& options, const std::string& model, const ReduceOptions
       return interrupt_exit_code();
     }
     file.write(*reduced);  // the control runs take long, and may be ended by anything
-    wanted.model = std::make_shared<const ReducedModel>(*reduced);
+    wanted.model = std::make_shared<const ReducedModel>(std::move(*reduced));
   }
   if (asked.controls > 0) {
     wanted.controls = asked.controls;

@@ -2,6 +2,8 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <ctime>
+#include <numeric>
 
 #include "uplift/base/format.h"
 #include "uplift/base/text.h"
@@ -106,22 +108,21 @@ void print(const Study& study, const Forecast& forecast) {
   line("disk", format_bytes(forecast.disk()));
 }
 
-/// Processor time [s] of a process, or of those of its children that have ended: unlike the elapsed time it does not depend on what else
-/// the machine does.
-double processor_time(int whose) {
-  rusage usage{};
-  ::getrusage(whose, &usage);
-  const auto seconds = [](const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+/// Processor time [s] of this process: unlike the elapsed time it does not depend on what else the machine does. getrusage() counts it in
+/// ticks of some milliseconds.
+double processor_time() {
+  timespec time{};
+  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 /// Runs as a worker of the study computes them, in a process of its own; the results of those before it ended. Their times are what each
 /// took of the processor.
 std::vector<StudyResult> compute_in_worker(const Study& study, StudyComputer& computer, const std::vector<RunRequest>& runs) {
   WorkerPool pool(1, {std::nullopt, study.of.plan.memory}, [&](const std::vector<RunRequest>& batch, const auto& done) {
-    double last = processor_time(RUSAGE_SELF);
+    double last = processor_time();
     computer.compute(batch, [&](StudyResult result) {
-      const double now = processor_time(RUSAGE_SELF);
+      const double now = processor_time();
       result.wall = now - std::exchange(last, now);
       done(result);
     });
@@ -170,16 +171,15 @@ double memory_of_group(const Study& study, StudyComputer& computer, const RunReq
   return with_more + static_cast<double>(together - more) * (with_more - with_few) / (more - few);
 }
 
-/// Time of a run on one core [s], from the time `alone` of the first one of a worker. Where that is short, most of it is the worker's start
-/// and code and memory that are touched for the first time: then it is what further runs take.
+/// Time of a run on one core [s], from that of the first one of a worker. Where that is short, most of it is code and memory that are
+/// touched for the first time: then it is what further runs take.
 double seconds_of(const Study& study, StudyComputer& computer, const RunRequest& trial, double alone) {
   constexpr double short_run = 0.1;  // s
   constexpr std::size_t further = 10;
   if (alone > short_run) return alone;
-  const double before = processor_time(RUSAGE_CHILDREN);
-  compute_in_worker(study, computer, group_of(study, trial, further + 1));
-  const double all = processor_time(RUSAGE_CHILDREN) - before;
-  return std::max(all - alone, 0.1 * all) / further;
+  const std::vector<StudyResult> runs = compute_in_worker(study, computer, group_of(study, trial, further + 1));
+  if (runs.size() <= further) return alone;  // the process has died
+  return std::accumulate(runs.begin() + 1, runs.end(), 0.0, [](double sum, const StudyResult& run) { return sum + run.wall; }) / further;
 }
 
 /// Runs of a worker's group: as many as it would be given.
@@ -206,14 +206,12 @@ int check_study(const Options& options) {
   RunRequest request{"trial", 0, curves.front().sample(), curves.front().motion(), 1, start, 1};
   request.factor = cloud ? start : start / study.of.motions[request.motion].intensity;
   const std::size_t together = group_size(study, computer, request, status);
-  const double before = processor_time(RUSAGE_CHILDREN);
   const std::vector<StudyResult> trials =
       compute_in_worker(study, computer, study.reduced ? group_of(study, request, 2) : std::vector{request});
   const StudyResult& trial = trials.front();
-  const double all = processor_time(RUSAGE_CHILDREN) - before;
   // a reduced model is begun once for all motions of a sample: the second run tells what the others take
   const bool told = study.reduced && trials.size() == 2;
-  const double seconds = told ? trials.back().wall : seconds_of(study, computer, request, all);
+  const double seconds = told ? trials.back().wall : seconds_of(study, computer, request, trial.wall);
   const double memory = together == 1 ? largest_memory() : memory_of_group(study, computer, request, together);
   const Case read = case_of_sample(study.of, 0);
   const RunSpec spec = run_of_study(study.of, read, 0, 1);
