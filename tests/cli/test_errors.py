@@ -80,6 +80,11 @@ class BadInput(CliTest):
         self.write(self.replace("force = [0, -1e6]", "force = [0, 1e6]") + "[gravity]\nacceleration = [0, -9.81]\n")
         self.assertNotIn("upwards", self.uplift("check", "case.toml", expect=None).stdout)
 
+    def test_a_loose_body_is_named_at_its_own_line(self):
+        text = self.replace("[nodes]\n", "[nodes]\nloose = [30, 5]\n") + '[[mass]]\nnode = "loose"\nmass = 100\n'
+        err = self.uplift("check", self.write(text).name, expect=2).stderr
+        self.assertRegex(err, rf'^error: case\.toml:{line_of(text, "loose")}: .* a mechanism: "loose" can move .*; hold it by a \[\[support\]\] or a \[\[spring\]\]$')
+
     def test_wrong_type(self):
         text = self.replace("points = 11", 'points = "many"')
         self.refused(text, f'{{file}}:{line_of(text, "points")}: interface[0].footing.points: expected an integer from 1 to 100000, found the text "many"')

@@ -122,6 +122,18 @@ Where place_of_interface(const Model& model, const Where& other) {
   return model.assembly.interface_where.empty() ? other : model.assembly.interface_where.front();
 }
 
+/// Whether a motion of the free unknowns moves a node on which an interface acts.
+bool moves_interfaces(const Model& model, const Vector& motion) {
+  Vector touched = Vector::Zero(model.free());
+  for (const Interface& interface : model.interfaces) touched += interface.b.cwiseAbs().transpose() * Vector::Ones(interface.b.rows());
+  const Vector by_interfaces = model.reduction.cwiseAbs() * touched, moved = (model.reduction * motion).cwiseAbs();
+  const double least = 1e-6 * moved.maxCoeff();
+  const int unknowns = model.space.unknowns();
+  for (Index first = 0; first + unknowns <= moved.size(); first += unknowns)
+    if (by_interfaces.segment(first, unknowns).maxCoeff() > 0 && moved.segment(first, unknowns).maxCoeff() > least) return true;
+  return false;
+}
+
 /// Groups of unknowns that the matrix couples.
 std::vector<int> blocks(const Sparse& a) {
   std::vector<int> parent(a.rows());
@@ -155,11 +167,12 @@ void check_static(const Model& model, const std::function<Where(const std::strin
   const std::vector<int> hinged = hinges(model);
   const char* wanted =
       model.interfaces.empty() ? "a structure that its supports hold" : "a structure that stands when all its interfaces are closed";
-  throw InputError(place_of_interface(model, node), "", wanted,
+  const bool on_interface = moves_interfaces(model, motion);
+  throw InputError(on_interface || !place_of ? place_of_interface(model, node) : node, "", wanted,
                    fmt::format("a mechanism: {} without resistance{}", loose,
-                               !hinged.empty()            ? "; beams end in hinges of solids: " + named_places(model, hinged)
-                               : model.interfaces.empty() ? "; hold it by a [[support]] or a [[spring]]"
-                                                          : "; hold it by a [[support]], a [[spring]] or K_t of an interface"));
+                               !hinged.empty() ? "; beams end in hinges of solids: " + named_places(model, hinged)
+                               : on_interface  ? "; hold it by a [[support]], a [[spring]] or K_t of an interface"
+                                               : "; hold it by a [[support]] or a [[spring]]"));
 }
 
 namespace {
