@@ -66,7 +66,7 @@ Pod::Added Pod::beside_basis(Matrix& x, double least) const {
   return added;
 }
 
-void Pod::add(Matrix x) {
+void Pod::add(Matrix& x) {
   const Index before = basis_.cols(), columns = x.cols();
   if (x.size() == 0 || x.isZero(0)) return;
   if (before == 0) basis_.resize(x.rows(), 0);

@@ -20,8 +20,8 @@ class Pod {
   Pod(const EnergyProduct& product, const Matrix& beside, double least, Index most,
       std::shared_ptr<PodWork> work = std::make_shared<PodWork>())
       : product_(product), beside_(beside), least_(least), most_(most), work_(std::move(work)) {}
-  /// Adds displacements, one a column.
-  void add(Matrix displacements);
+  /// Adds displacements, one a column, and leaves in their place what the basis and `beside` did not contain: a batch is too large to copy.
+  void add(Matrix& displacements);
   const Matrix& basis() const { return basis_; }
   /// Singular values, descending: square roots of sums of energies.
   const Vector& values() const { return values_; }

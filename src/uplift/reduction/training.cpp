@@ -29,9 +29,10 @@ constexpr Index most_of_load = 100;  // directions at least that the answer to e
 constexpr int steps_of_bell = 8;
 constexpr int snapshot_every = 2, snapshot_of_random_every = 5;  // steps; odd: not always at the same time of the bells
 
-/// Snapshots that wait for their decomposition: 150 MB at most, but for very large models.
+/// Snapshots that wait for their decomposition: 110 MB at most, but for very large models. The work space of a decomposition is six times
+/// as large.
 Index snapshots_at_once(Index unknowns) {
-  return std::clamp<Index>(20'000'000 / std::max<Index>(unknowns, 1), 64, 320);
+  return std::clamp<Index>(14'000'000 / std::max<Index>(unknowns, 1), 64, 320);
 }
 
 class Trainer {
@@ -74,10 +75,7 @@ class Trainer {
     if (stopped_) basis.why = "interrupted";
     if (!basis.why.empty()) return basis;
     num_exact_ = exact_.cols();
-    all_ = std::exchange(exact_, Matrix());
-    const Matrix further = pod_.release();
-    all_.conservativeResize(model_.free(), num_exact_ + further.cols());
-    all_.rightCols(further.cols()) = further;
+    collect_vectors();
     choose_size(basis);
     return basis;
   }
@@ -149,7 +147,8 @@ class Trainer {
     double most = 0;    // energy
     bool over = false;  // it has decayed
     void flush() {
-      if (count > 0) own.add(taken.leftCols(count));
+      if (count < taken.cols()) taken.conservativeResize(Eigen::NoChange, count);  // the last batch
+      own.add(taken);
       count = 0;
     }
   };
@@ -193,7 +192,8 @@ class Trainer {
       const Index at_once = snapshots_at_once(model_.free());
       for (Index first = 0; first < answers.cols(); first += at_once) {
         const Index count = std::min(at_once, answers.cols() - first);
-        pod_.add(answers.middleCols(first, count) * weights.segment(first, count).asDiagonal());
+        Matrix weighted = answers.middleCols(first, count) * weights.segment(first, count).asDiagonal();
+        pod_.add(weighted);
       }
     }
   }
@@ -212,6 +212,15 @@ class Trainer {
     add_symmetric_product(1, model_.stiffness, displacement, forces);
     add_symmetric_product(1, model_.mass, moving, momenta);
     return (displacement.cwiseProduct(forces) + moving.cwiseProduct(momenta)).colwise().sum();
+  }
+
+  /// The exact vectors and those of the decomposition, which ends.
+  void collect_vectors() {
+    all_ = std::exchange(exact_, Matrix());
+    const Matrix further = pod_.release();
+    all_.conservativeResize(model_.free(), num_exact_ + further.cols());
+    all_.rightCols(further.cols()) = further;
+    *work_ = {};
   }
 
   /// Marches the sweep with the whole model, then with leading vectors of the basis until the openings and velocities agree.

@@ -34,6 +34,10 @@ Matrix with_singular_values(const Vector& singular, const Vector& weights, Index
   return weights.cwiseSqrt().cwiseInverse().asDiagonal() * (q * singular.asDiagonal() * r.transpose());
 }
 
+void add(Matrix displacements, Pod& pod) {
+  pod.add(displacements);
+}
+
 TEST(Pod, FindsSingularValuesOverTwelveDecadesBatchByBatch) {
   const Index rows = 60, columns = 45, count = 13;
   Vector singular(count), weights(rows);
@@ -43,7 +47,7 @@ TEST(Pod, FindsSingularValuesOverTwelveDecadesBatchByBatch) {
   const EnergyProduct product(diagonal(weights), Sparse(rows, rows), 0);
   const Matrix nothing(rows, 0);
   Pod pod(product, nothing, 1e-10, 100);
-  for (const auto& [first, width] : {std::pair<Index, Index>{0, 10}, {10, 1}, {11, 30}, {41, 4}}) pod.add(x.middleCols(first, width));
+  for (const auto& [first, width] : {std::pair<Index, Index>{0, 10}, {10, 1}, {11, 30}, {41, 4}}) add(x.middleCols(first, width), pod);
   ASSERT_GE(pod.values().size(), 9);
   for (Index k = 0; k < 9; ++k) EXPECT_NEAR(pod.values()[k], singular[k], 1e-5 * singular[k]) << k;
   const Matrix gram = pod.basis().transpose() * product.times(pod.basis());
@@ -56,11 +60,11 @@ TEST(Pod, KeepsNothingOfNothingAndNoMoreThanItMay) {
   const EnergyProduct product(diagonal(Vector::Ones(8)), Sparse(8, 8), 0);
   const Matrix nothing(8, 0);
   Pod pod(product, nothing, 1e-9, 3);
-  pod.add(Matrix::Zero(8, 4));
+  add(Matrix::Zero(8, 4), pod);
   EXPECT_EQ(pod.basis().cols(), 0);
-  pod.add(random_matrix(8, 20, 3));
+  add(random_matrix(8, 20, 3), pod);
   EXPECT_EQ(pod.basis().cols(), 3);
-  pod.add(Matrix(8, 0));
+  add(Matrix(8, 0), pod);
   EXPECT_EQ(pod.basis().cols(), 3);
 }
 
@@ -74,9 +78,9 @@ TEST(Pod, LeavesOutWhatOtherVectorsRepresent) {
   of_rest -= beside * (beside.transpose() * product.times(of_rest));
   const Matrix nothing(rows, 0);
   Pod alone(product, nothing, 1e-9, 20), pod(product, beside, 1e-9, 20);
-  alone.add(of_rest);
+  add(of_rest, alone);
   const Matrix all = of_rest + 100 * beside * random_matrix(5, 12, 6);
-  pod.add(all);
+  add(all, pod);
   ASSERT_EQ(pod.values().size(), 3);
   for (Index k = 0; k < 3; ++k) EXPECT_NEAR(pod.values()[k], alone.values()[k], 1e-8 * alone.values()[k]) << k;
   EXPECT_NEAR(pod.energy(), all.cwiseProduct(product.times(all)).sum(), 1e-12 * pod.energy());
