@@ -44,7 +44,7 @@ void print_runs(const Results& results, const ComparisonSummary& compared) {
 
 void print_sweep(const ComparisonSummary& compared) {
   if (compared.sweep.empty()) return;
-  say("\nenergy created against the stiffness of the joint");
+  say("\nenergy created, a share of the energy put in, against the stiffness of the joint");
   std::vector<std::vector<std::string>> rows{{"k F", "path average", "end of step"}};
   for (const SweepRow& row : compared.sweep)
     rows.push_back({fmt::format("{:g}", row.ratio), fmt::format("{:.2e}", row.path), fmt::format("{:.2e}", row.end)});

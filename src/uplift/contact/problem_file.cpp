@@ -171,7 +171,9 @@ class Reader {
 
   StoredProblem problem() const {
     if (!json_.is_object()) refuse("", "a JSON object", json_.type_name());
-    if (const std::string found = text(at(json_, "", "format"), "format"); found != format_name) refuse("format", format_name, found);
+    if (!json_.contains("format"))
+      refuse("", std::string("the interface problem of a failed step, \"format\": \"") + format_name + '"', "another document");
+    if (const std::string found = text(json_["format"], "format"); found != format_name) refuse("format", format_name, found);
     check_keys();
     StoredProblem stored;
     auto shared = std::make_shared<ContactModel>();
