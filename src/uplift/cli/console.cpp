@@ -139,7 +139,11 @@ void StatusLine::operator()(const std::string& text) {
   const Clock::time_point now = Clock::now();
   if (quiet_ || now - last_ < (terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(10000))) return;
   last_ = now;
-  if (!terminal_) return complain(text);
+  if (!terminal_) {
+    if (text != told_) complain(text);  // a log has a line for every change
+    told_ = text;
+    return;
+  }
   put(stderr, "\r\033[K" + text);
   std::fflush(stderr);
   drawn_ = true;

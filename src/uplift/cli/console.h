@@ -48,6 +48,7 @@ class StatusLine {
  private:
   using Clock = std::chrono::steady_clock;
   bool quiet_, terminal_, drawn_ = false;
+  std::string told_;  // in a pipe
   Clock::time_point last_ = Clock::now();
 };
 

@@ -38,8 +38,12 @@ std::string outcomes_text(const StudyStatus& status) {
 std::string status_text(const StudyStatus& status) {
   std::string text = fmt::format("{}/{} runs, {}/{} curves complete: {}", status.runs, std::max(status.runs, status.expected),
                                  status.complete, status.curves, outcomes_text(status));
-  if (status.computed > 0 && status.seconds > 0)
-    text += fmt::format("; {:.3g} runs a second", static_cast<double>(status.computed) / status.seconds);
+  constexpr double long_run = 5;  // s: shorter ones need no progress of their own
+  if (status.in_progress > 0 && status.rate() > 0 && static_cast<double>(status.in_progress) > long_run * status.rate())
+    text += fmt::format("; {} in progress, {} done", status.in_progress, percent(status.marched / static_cast<double>(status.in_progress)));
+  if (status.rate() > 0)
+    text += status.rate() < 0.02 ? fmt::format("; {:.3g} runs an hour", 3600 * status.rate())
+                                 : fmt::format("; {:.3g} runs a second", status.rate());
   if (const std::optional<double> left = status.left(); left && *left > 0) text += fmt::format(", {} left", time_text(*left));
   return text;
 }

@@ -6,6 +6,7 @@
 #include <deque>
 #include <filesystem>
 #include <new>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -94,7 +95,8 @@ std::size_t StudyComputer::best_together(const RunRequest& one) try {
   return 1;  // the run itself will say why
 }
 
-StudyResult StudyComputer::finish(const RunRequest& request, const BuiltCase& built, const RunResult& run) const {
+StudyResult StudyComputer::finish(const RunRequest& request, const BuiltCase& built, RunResult run) const {
+  if (ended_ && run.status == RunStatus::interrupted) run.status = RunStatus::completed;
   StudyResult made = result_of(built, run, study_.of.plan.floor_spectra);
   identify(study_, request, made);
   if (made.outcome == StudyOutcome::timeout) made.reason = fmt::format("it took longer than {:g} s", study_.of.plan.timeout.value_or(0));
@@ -116,11 +118,17 @@ RunResult StudyComputer::run_reduced(BuiltCase& built, const Watch& watch, std::
   return run(built.model, built.plan, built.behaviours, watch, {}, &keeping);
 }
 
-/// Stops what takes longer, from now on, than a run may.
-Watch StudyComputer::watch_of_timeout() const {
-  if (!study_.of.plan.timeout) return {};
-  return [start = std::chrono::steady_clock::now(), timeout = *study_.of.plan.timeout](const Progress&) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < timeout;
+bool StudyComputer::goes_on(double marched) {
+  if (!ended_ && watch_ && !watch_(marched)) ended_ = true;
+  return !ended_;
+}
+
+/// Tells how far a run is that is computed alone, and stops what takes longer, from now on, than a run may.
+Watch StudyComputer::watch_of_run() {
+  ended_ = false;
+  return [this, start = std::chrono::steady_clock::now(), timeout = study_.of.plan.timeout](const Progress& progress) {
+    if (!goes_on(progress.fraction)) return false;
+    return !timeout || std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < *timeout;
   };
 }
 
@@ -134,7 +142,7 @@ std::optional<StudyResult> StudyComputer::compute_again(const RunRequest& reques
     start_->swap_matrices(built->model);
     Keeping keeping;
     keeping.from = &start_->state;
-    StudyResult made = finish(request, *built, run(built->model, built->plan, built->behaviours, watch_of_timeout(), {}, &keeping));
+    StudyResult made = finish(request, *built, run(built->model, built->plan, built->behaviours, watch_of_run(), {}, &keeping));
     start_->swap_matrices(built->model);
     ran_ = std::move(built);
     return made;
@@ -145,12 +153,11 @@ std::optional<StudyResult> StudyComputer::compute_again(const RunRequest& reques
 }
 
 StudyResult StudyComputer::compute(const RunRequest& request, BuiltCase& built) {
-  const Watch watch = watch_of_timeout();
+  const Watch watch = watch_of_run();
   if (!study_.reduced) return finish(request, built, run(built.model, built.plan, built.behaviours, watch));
   // what the runs share is kept again by a run that goes through
   std::optional<ReducedStart> shared = start_sample_ == request.sample ? std::exchange(start_, {}) : std::nullopt;
-  const RunResult result = run_reduced(built, watch, shared);
-  StudyResult made = finish(request, built, result);
+  StudyResult made = finish(request, built, run_reduced(built, watch, shared));
   ran_.reset();
   if (shared) {
     shared->swap_matrices(built.model);
@@ -164,17 +171,27 @@ StudyResult StudyComputer::compute(const RunRequest& request, BuiltCase& built) 
 /// A run of a large model is always marched in this way, with others or not: its result does not depend on them, to the last bit.
 void StudyComputer::compute_in_lockstep(std::span<const RunRequest> group, BuiltCase first,
                                         const std::function<void(const StudyResult&)>& done) {
+  ended_ = false;
   std::deque<BuiltCase> built;
   std::vector<LockstepRun> runs;
+  std::vector<double> marched(group.size(), 0);  // of each run; 0: it has ended
+  const auto watch_of = [&](std::size_t number) -> Watch {
+    return [&, number](const Progress& progress) {
+      marched[number] = progress.fraction;
+      return goes_on(std::accumulate(marched.begin(), marched.end(), 0.0));
+    };
+  };
   for (const RunRequest& request : group) {
     built.push_back(runs.empty() ? std::move(first) : build_run(request));
     const bool shares = !runs.empty() && share_matrices(built.back().model, built.front().model);
-    runs.push_back({&built.back().model, &built.back().plan, &built.back().behaviours, shares ? &built.front().model : nullptr});
+    runs.push_back({&built.back().model, &built.back().plan, &built.back().behaviours, shares ? &built.front().model : nullptr,
+                    watch_of(runs.size())});
   }
   LockstepOptions options;
   options.ended = [&](std::size_t number, RunResult& run) {
     run.wall /= static_cast<double>(group.size());
-    done(finish(group[number], built[number], run));
+    marched[number] = 0;
+    done(finish(group[number], built[number], std::move(run)));
   };
   run_in_lockstep(runs, options);
 }
@@ -188,7 +205,9 @@ StudyResult StudyComputer::compute(const RunRequest& request) {
   return made;
 }
 
-void StudyComputer::compute(std::span<const RunRequest> group, const std::function<void(const StudyResult&)>& done) {
+void StudyComputer::compute(std::span<const RunRequest> group, const std::function<void(const StudyResult&)>& done,
+                            const WatchRuns& watch) {
+  watch_ = watch, ended_ = false;
   std::set<std::string> told;
   const auto tell = [&](const StudyResult& result) {
     told.insert(result.id);

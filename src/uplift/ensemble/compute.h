@@ -24,6 +24,10 @@ void list_parts(Archive& archive, T& request) {
   archive(request.id, request.curve, request.sample, request.motion, request.factor, request.intensity, request.attempt);
 }
 
+/// Asked now and then while runs are computed; false ends those that are, as if their motions were that short. `marched`: how much of the
+/// runs of which no result was told is done, in runs.
+using WatchRuns = std::function<bool(double marched)>;
+
 /// Computes runs of a study. What does not depend on the run is kept: the checked cases of the last samples.
 class StudyComputer {
  public:
@@ -35,16 +39,17 @@ class StudyComputer {
   /// How many runs of one sample are best computed together: several where the model is so large that they march in lockstep.
   std::size_t best_together(const RunRequest& one);
   /// Runs of one sample, a group: they are told one by one as they end. Never throws for one of them: what went wrong is its outcome.
-  void compute(std::span<const RunRequest> group, const std::function<void(const StudyResult&)>& done);
+  void compute(std::span<const RunRequest> group, const std::function<void(const StudyResult&)>& done, const WatchRuns& watch = {});
   /// One run; throws what goes wrong.
   StudyResult compute(const RunRequest& request);
 
  private:
   const Case& case_of(std::size_t sample);
   bool marches_in_lockstep(const BuiltCase& built) const;
-  StudyResult finish(const RunRequest& request, const BuiltCase& built, const RunResult& run) const;
+  StudyResult finish(const RunRequest& request, const BuiltCase& built, RunResult run) const;
   StudyResult compute(const RunRequest& request, BuiltCase& built);
-  Watch watch_of_timeout() const;
+  bool goes_on(double marched);
+  Watch watch_of_run();
   RunSpec spec_of(const RunRequest& request, const Case& read) const;
   std::optional<StudyResult> compute_again(const RunRequest& request);
   RunResult run_reduced(BuiltCase& built, const Watch& watch, std::optional<ReducedStart>& shared) const;
@@ -52,6 +57,8 @@ class StudyComputer {
   BuiltCase build_run(const RunRequest& request);
 
   const Study& study_;
+  WatchRuns watch_;                                                       // of the group that is computed
+  bool ended_ = false;                                                    // by it, the run or those in lockstep
   std::list<std::pair<std::size_t, std::unique_ptr<const Case>>> cases_;  // the last used one first
   std::optional<ReducedStart> start_;                                     // of the last run with a reduced model
   std::size_t start_sample_ = 0;                                          // that it belongs to

@@ -56,8 +56,8 @@ class Coordinator : public PoolCoordinator {
     PoolCoordinator::compute_all({control_.workers, limits, plan.attempts, together, control_.stopped});
   }
 
-  void compute(const std::vector<RunRequest>& batch, const std::function<void(const StudyResult&)>& done) override {
-    computer_.compute(batch, done);
+  void compute(const std::vector<RunRequest>& batch, const std::function<void(const StudyResult&)>& done, const WatchRuns& watch) override {
+    computer_.compute(batch, done, watch);
   }
 
   void note(const StudyResult& result) override {
@@ -80,6 +80,8 @@ class Coordinator : public PoolCoordinator {
     sync();
     status_ = status_of(curves_, control_.shard);
     status_.computed = computed();
+    status_.in_progress = in_progress();
+    status_.marched = marched();
     status_.seconds = seconds();
     if (control_.follow) control_.follow(status_);
   }
@@ -96,9 +98,14 @@ class Coordinator : public PoolCoordinator {
 
 }  // namespace
 
+double StudyStatus::rate() const {
+  const double done = static_cast<double>(computed) + marched;
+  return seconds > 0 && done >= 0.01 * static_cast<double>(in_progress) ? done / seconds : 0;
+}
+
 std::optional<double> StudyStatus::left() const {
-  if (computed == 0 || expected < runs) return std::nullopt;
-  return seconds / static_cast<double>(computed) * static_cast<double>(expected - runs);
+  if (rate() == 0 || expected < runs) return std::nullopt;
+  return std::max(0.0, static_cast<double>(expected - runs) - marched) / rate();
 }
 
 StudyStatus status_of(const std::vector<StudyCurve>& curves, const Shard& shard) {

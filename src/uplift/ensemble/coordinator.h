@@ -23,8 +23,11 @@ struct StudyStatus {
   std::size_t expected = 0;              // in all: of searches by the mean of the complete curves
   std::array<std::size_t, std::size(study_outcomes)> outcomes{};
   std::size_t computed = 0;            // by this command
+  std::size_t in_progress = 0;         // runs that workers compute now
+  double marched = 0;                  // how much of these is done, in runs
   double seconds = 0;                  // s of this command
-  std::optional<double> left() const;  // s, by the rate of this command
+  double rate() const;                 // runs a second of this command; 0: not known yet
+  std::optional<double> left() const;  // s, by that rate
 };
 StudyStatus status_of(const std::vector<StudyCurve>& curves, const Shard& shard);
 

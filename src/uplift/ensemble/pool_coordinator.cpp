@@ -35,14 +35,21 @@ std::vector<RunRequest> Waiting::take(std::size_t most, std::optional<std::size_
 
 void PoolCoordinator::compute_all(const Plan& plan) {
   plan_ = plan;
-  WorkerPool pool(plan.workers, plan.limits, [this](const std::vector<RunRequest>& batch, const auto& done) { compute(batch, done); });
+  WorkerPool pool(plan.workers, plan.limits,
+                  [this](const std::vector<RunRequest>& batch, const auto& done, const WatchRuns& watch) { compute(batch, done, watch); });
   last_sample_.resize(pool.size());
   while (!(plan.stopped && plan.stopped())) {
     feed(pool);
     if (waiting_.empty() && idle(pool)) break;
     take(pool.wait(longest_wait));
+    look_at(pool);
     if (Clock::now() - synced_ > between_syncs) tell();
   }
+}
+
+void PoolCoordinator::look_at(const WorkerPool& pool) {
+  in_progress_ = 0, marched_ = 0;
+  for (std::size_t i = 0; i < pool.size(); ++i) in_progress_ += pool.outstanding(i).size(), marched_ += pool.marched(i);
 }
 
 /// How many runs a worker gets at once: so few that all end together, and short ones by the dozen.

@@ -51,13 +51,17 @@ class PoolCoordinator {
   /// Everything that was told is on the disk from here on.
   void sync() { parts_.sync(), synced_ = Clock::now(); }
   std::size_t computed() const { return computed_; }
+  /// Runs that workers compute now, and how much of these is done, in runs.
+  std::size_t in_progress() const { return in_progress_; }
+  double marched() const { return marched_; }
   /// s since the beginning.
   double seconds() const { return std::chrono::duration<double>(Clock::now() - started_).count(); }
 
  private:
   using Clock = std::chrono::steady_clock;
   /// Called in the workers.
-  virtual void compute(const std::vector<RunRequest>& batch, const std::function<void(const StudyResult&)>& done) = 0;
+  virtual void compute(const std::vector<RunRequest>& batch, const std::function<void(const StudyResult&)>& done,
+                       const WatchRuns& watch) = 0;
   /// A result has come. It is not written yet.
   virtual void note(const StudyResult& result) = 0;
   /// Results are written: further runs may be added.
@@ -68,6 +72,7 @@ class PoolCoordinator {
 
   std::size_t batch_size(const WorkerPool& pool) const;
   void feed(WorkerPool& pool);
+  void look_at(const WorkerPool& pool);
   void take(const WorkerPool::Events& events);
   void take(const WorkerPool::Death& death);
   void keep(const StudyResult& result);
@@ -78,7 +83,8 @@ class PoolCoordinator {
   std::unordered_map<std::string, int> tries_;
   std::vector<std::optional<std::size_t>> last_sample_;
   std::string lines_;  // not written yet
-  std::size_t computed_ = 0;
+  std::size_t computed_ = 0, in_progress_ = 0;
+  double marched_ = 0;
   double wall_ = 0;  // s of all computed runs
   Clock::time_point started_ = Clock::now(), synced_ = started_;
 };

@@ -37,7 +37,7 @@ class TrustCoordinator : public PoolCoordinator {
     return of_machine ? nullptr : found;
   }
 
-  void compute(const std::vector<RunRequest>& batch, const std::function<void(const StudyResult&)>& done) override {
+  void compute(const std::vector<RunRequest>& batch, const std::function<void(const StudyResult&)>& done, const WatchRuns&) override {
     for (const RunRequest& request : batch) {
       StudyResult result;
       try {

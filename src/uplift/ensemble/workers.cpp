@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -15,6 +16,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <memory>
 
 #include "uplift/base/archive.h"
 #include "uplift/io/files.h"
@@ -88,7 +90,12 @@ std::string how_it_ended(int status) {
 }  // namespace
 
 WorkerPool::WorkerPool(int count, const WorkerLimits& limits, Compute compute) : limits_(limits), compute_(std::move(compute)) {
+  static_assert(std::atomic<double>::is_always_lock_free);
   workers_.resize(static_cast<std::size_t>(count));
+  void* shared = ::mmap(nullptr, workers_.size() * sizeof *marched_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (shared == MAP_FAILED) throw OutputError(fmt::format("cannot share memory with the workers: {}", std::strerror(errno)));
+  marched_ = static_cast<std::atomic<double>*>(shared);
+  std::uninitialized_fill_n(marched_, workers_.size(), 0.0);
   for (Worker& worker : workers_) start(worker);
 }
 
@@ -98,6 +105,15 @@ WorkerPool::~WorkerPool() {
     ::waitpid(worker.process, nullptr, 0);
     ::close(worker.channel);
   }
+  ::munmap(marched_, workers_.size() * sizeof *marched_);
+}
+
+std::atomic<double>& WorkerPool::marched_of(const Worker& worker) const {
+  return marched_[&worker - workers_.data()];
+}
+
+double WorkerPool::marched(std::size_t worker) const {
+  return std::min(marched_[worker].load(), static_cast<double>(workers_[worker].outstanding.size()));
 }
 
 void WorkerPool::start(Worker& worker) {
@@ -118,15 +134,16 @@ void WorkerPool::start(Worker& worker) {
     std::signal(SIGTERM, SIG_DFL);
     keep_only(ends[1]);
     use_one_thread_after_fork();
-    work(ends[1]);
+    work(ends[1], marched_of(worker));
   }
   ::close(ends[1]);
   worker = Worker{};
+  marched_of(worker) = 0;
   worker.process = process;
   worker.channel = ends[0];
 }
 
-void WorkerPool::work(int channel) const {
+void WorkerPool::work(int channel, std::atomic<double>& marched) const {
   if (limits_.memory) {
     const auto bytes = address_space() + static_cast<rlim_t>(std::min(1e6 * *limits_.memory, 1e18));
     const rlimit limit{bytes, bytes};
@@ -139,8 +156,15 @@ void WorkerPool::work(int channel) const {
   try {
     while (connected && get(channel, received)) {
       std::vector<RunRequest> batch;
-      while (connected && take(received, batch))
-        compute_(batch, [&](const StudyResult& result) { connected = connected && put(channel, message(result)); });
+      const auto tell = [&](const StudyResult& result) {
+        marched = 0;
+        connected = connected && put(channel, message(result));
+      };
+      const auto watch = [&](double runs) {
+        marched = runs;
+        return true;
+      };
+      while (connected && take(received, batch)) compute_(batch, tell, watch);
     }
   } catch (const std::exception&) {
     ::_exit(1);

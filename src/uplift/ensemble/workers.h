@@ -1,6 +1,7 @@
 #pragma once
 #include <sys/types.h>
 
+#include <atomic>
 #include <chrono>
 #include <deque>
 #include <functional>
@@ -21,8 +22,9 @@ struct WorkerLimits {
 /// Processes that are forked from this one and share its memory until they write to it. This process starts no thread before.
 class WorkerPool {
  public:
-  /// `compute` is called in the workers: with a batch, and with what is to be called with each result.
-  using Compute = std::function<void(const std::vector<RunRequest>&, const std::function<void(const StudyResult&)>&)>;
+  /// `compute` is called in the workers: with a batch, with what is to be called with each result, and with what is told how far they are.
+  using Compute =
+      std::function<void(const std::vector<RunRequest>&, const std::function<void(const StudyResult&)>& done, const WatchRuns& watch)>;
   WorkerPool(int count, const WorkerLimits& limits, Compute compute);
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
@@ -32,6 +34,8 @@ class WorkerPool {
   std::size_t size() const { return workers_.size(); }
   /// Runs that a worker was given and has not told the results of.
   const std::deque<RunRequest>& outstanding(std::size_t worker) const { return workers_[worker].outstanding; }
+  /// How much of these is done, in runs.
+  double marched(std::size_t worker) const;
   /// Gives a worker a batch.
   void send(std::size_t worker, const std::vector<RunRequest>& batch);
 
@@ -60,12 +64,14 @@ class WorkerPool {
     bool too_long = false;
   };
   void start(Worker& worker);
-  [[noreturn]] void work(int channel) const;
+  std::atomic<double>& marched_of(const Worker& worker) const;
+  [[noreturn]] void work(int channel, std::atomic<double>& marched) const;
   bool receive(Worker& worker, Events& events) const;
   Death bury(Worker& worker);
   const WorkerLimits limits_;
   const Compute compute_;
   std::vector<Worker> workers_;
+  std::atomic<double>* marched_;  // of every worker, in memory that all processes share
 };
 
 }  // namespace uplift

@@ -15,10 +15,12 @@ namespace {
 
 using Done = std::function<void(const StudyResult&)>;
 
-/// "die": the worker is killed. "hang": it does not come back. All others have a result at once.
-void compute(const std::vector<RunRequest>& batch, const Done& done) {
+/// "die": the worker is killed. "hang": it does not come back. "slow": it tells that it is at 0.3, and has a result after 0.5 s. All others
+/// have a result at once.
+void compute(const std::vector<RunRequest>& batch, const Done& done, const WatchRuns& watch) {
   for (const RunRequest& request : batch) {
     if (request.id == "die") ::kill(::getpid(), SIGKILL);
+    if (request.id == "slow" && watch(0.3)) ::usleep(500'000);
     if (request.id == "hang") ::sleep(100);
     StudyResult result;
     result.id = request.id;
@@ -87,7 +89,7 @@ TEST(WorkerPool, AWorkerFactorisesAfterItsParentHas) {
   const Sparse matrix = large_matrix();
   const auto solver = solver_catalog().front()->make(Values());
   const double nonzeros = solver->factorise(matrix).factor->nonzeros();  // its threads are not in the workers
-  WorkerPool pool(2, {}, [&](const std::vector<RunRequest>& batch, const Done& done) {
+  WorkerPool pool(2, {}, [&](const std::vector<RunRequest>& batch, const Done& done, const WatchRuns&) {
     for (const RunRequest& each : batch) {
       StudyResult result;
       result.id = each.id;
@@ -120,6 +122,26 @@ TEST(WorkerPool, ADeadWorkerLosesItsBatchAndIsReplaced) {
   EXPECT_TRUE(events.deaths[0].how.starts_with("signal 9")) << events.deaths[0].how;
   pool.send(0, {request("b")});
   EXPECT_EQ(all_of(pool).results.size(), 1U);
+}
+
+TEST(WorkerPool, TellsHowFarItsRunsAre) {
+  WorkerPool pool(2, {}, compute);
+  pool.send(1, {request("slow"), request("a")});
+  const auto begin = std::chrono::steady_clock::now();
+  while (pool.marched(1) == 0 && std::chrono::steady_clock::now() - begin < std::chrono::minutes(1))
+    pool.wait(std::chrono::milliseconds(5));
+  EXPECT_EQ(pool.marched(1), 0.3);
+  EXPECT_EQ(pool.marched(0), 0);
+  all_of(pool);
+  EXPECT_EQ(pool.marched(1), 0);
+}
+
+// A worker that ends before its runs do leaves nothing behind that counts for the next one.
+TEST(WorkerPool, ALostRunIsNotHalfDone) {
+  WorkerPool pool(1, {.timeout = 0.1, .memory = std::nullopt}, compute);
+  pool.send(0, {request("slow")});
+  ASSERT_EQ(all_of(pool).deaths.size(), 1U);
+  EXPECT_EQ(pool.marched(0), 0);
 }
 
 TEST(WorkerPool, AWorkerThatDoesNotComeBackIsEnded) {
