@@ -110,6 +110,8 @@ export interface VerdictSummary {
   numbers: ResultNumbers;
   interfaces: InterfaceSummary[];
   beams?: { name: string; numbers: ResultNumbers }[];
+  /** In space: storeys of which both axes are recorded. */
+  storeys?: { name: string; numbers: ResultNumbers }[];
   criteria: CriterionSummary[];
   floors: { floor: string; damping: number; bands: { band: string; change_percent: number; change: string; arises?: boolean }[]; note?: string }[];
 }

@@ -60,6 +60,7 @@ const SUMMARY = {
       { name: "wall", role: "wall", numbers: { max_slip: { value: 2e-3, unit: "m" } } },
     ],
     beams: [{ name: "column", numbers: { max_beam_moment: { value: 5e6, unit: "N m" }, max_beam_shear: { value: 0, unit: "N" } } }],
+    storeys: [{ name: "level 3 m", numbers: { max_storey_shear_x: { value: 3e6, unit: "N" }, max_storey_shear_y: { value: 0, unit: "N" }, max_storey_shear: { value: 3e6, unit: "N", time: 2 } } }],
     criteria: [{ quantity: "change_of_moment", unit: "1", interface: "soil", result: "met", value: -0.519, limit: 0.1, kind: "at_most", source: "x" }],
   },
   band: 0.02, compared_columns: [],
@@ -94,7 +95,7 @@ export const DOCUMENT = {
 function check_verdict(check, { interfaces: [base, wall], criteria: [criterion] }) {
   const row = (label) => [...base.beside, ...base.rest, ...wall.beside].find((each) => each.label === label) ?? {};
   const same = (label, key, text) => check.equal(row(label)[key], text, `${label}: ${key}`);
-  check.equal(base.beside.map((each) => each.label).join("; "), "Motion of the top; Base shear per metre; Base moment per metre; Least compression per metre; Utilisation of bearing capacity; Moment of column", "captions in their order");
+  check.equal(base.beside.map((each) => each.label).join("; "), "Motion of the top; Base shear per metre; Base moment per metre; Least compression per metre; Utilisation of bearing capacity; Storey shear, level 3 m; Storey shear along x, level 3 m; Moment of column", "captions in their order");
   same("Motion of the top", "text", "35.9 mm");
   same("Motion of the top", "changeText", "120 times as large");
   same("Motion of the top", "stepText", "±0.6 %");

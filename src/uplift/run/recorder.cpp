@@ -55,7 +55,7 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
     for (const std::vector<CombinedRequest::Term>& terms : request.components) {
       std::vector<Term>& sum = components.emplace_back();
       for (const CombinedRequest::Term& term : terms) {
-        const int column = find_request(plan.requests, term.kind, term.of);
+        const int column = term.column.empty() ? find_request(plan.requests, term.kind, term.of) : find_request(plan.requests, term.column);
         recorded = recorded && column >= 0;
         if (recorded) sum.push_back({recent_.data() + static_cast<std::size_t>(column) * apart, term.factor});
       }

@@ -55,6 +55,11 @@ int find_request(const std::vector<Request>& columns, Request::Kind kind, int un
   return found == columns.end() ? -1 : static_cast<int>(found - columns.begin());
 }
 
+int find_request(const std::vector<Request>& columns, std::string_view name) {
+  const auto found = std::ranges::find(columns, name, &Request::name);
+  return found == columns.end() ? -1 : static_cast<int>(found - columns.begin());
+}
+
 bool is_step_mean(Request::Kind kind) {
   using enum Request::Kind;
   switch (kind) {

@@ -91,24 +91,27 @@ struct Request {
   int unknown = 0;                              // full unknown
   int below = -1;                               // full unknown whose displacement is subtracted (drift); -1: none
   double factor = 1;                            // of the difference
-  bool storey = false;                          // the force is a storey shear
+  std::optional<double> level;                  // m: of a storey shear, with its axis as component, like a drift
   std::shared_ptr<const ForceQuantity> force;   // kind `force`
   int interface = 0, point = 0, component = 0;  // `rotation` of an interface: slope of the opening's best plane [rad]
 };
 
-/// A motion made of several columns, whose largest length is kept, formed at every step.
+/// A motion, a storey shear or a drift made of several columns, whose largest length is kept, formed at every step.
 struct CombinedRequest {
   struct Term {
     Request::Kind kind = Request::Kind::displacement;
     int of = 0;  // the full unknown of a displacement, else the interface
     double factor = 1;
+    std::string column = {};  // its name, where kind and `of` do not tell it from others
   };
-  std::string name;
+  std::string name, unit = "m";               // N: storey shear, 1: drift ratio
   std::vector<std::vector<Term>> components;  // sums of columns, at right angles; one alone keeps its sign. At most two
 };
 
 /// The first column of this kind and this unknown (of a motion of a node, no drift) or interface; -1: there is none.
 int find_request(const std::vector<Request>& columns, Request::Kind kind, int unknown_or_interface);
+/// The column of this name; -1: there is none.
+int find_request(const std::vector<Request>& columns, std::string_view name);
 
 /// Whether a column of this kind is the mean over the step before its instant where RunResult::step_means; else it belongs to the instant.
 bool is_step_mean(Request::Kind kind);

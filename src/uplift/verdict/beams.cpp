@@ -62,6 +62,31 @@ std::optional<Reached> largest_peak(const RunResult& run, Wanted wanted) {
   return reached;
 }
 
+/// Storey shears, or drift ratios. In space the number of both axes together is the length of the vector.
+struct Storeys {
+  std::string_view together, along_x, along_y, unit;
+  bool is(const Request& column) const { return column.unit == unit && (unit == "N" ? column.level.has_value() : column.below >= 0); }
+
+  /// One axis of all storeys, or of the one with the column of this name.
+  std::optional<Reached> along(const RunResult& run, int axis, std::string_view column = {}) const {
+    return largest_peak(run,
+                        [&](const Request& each) { return is(each) && each.component == axis && (column.empty() || each.name == column); });
+  }
+  /// Of one CombinedRequest of the plan.
+  std::optional<Reached> length(const RunResult& run, std::size_t number) const {
+    if (number >= run.combined.size() || !run.combined[number].known) return std::nullopt;
+    return Reached{run.combined[number].value, run.combined[number].time};
+  }
+  /// Of all storeys: vectors, and axes that are recorded alone.
+  std::optional<Reached> all(const BuiltCase& built, const RunResult& run) const {
+    std::optional<Reached> most = largest_peak(run, [&](const Request& each) { return is(each); });
+    for (std::size_t k = 0; most && k < built.plan.combined.size(); ++k)
+      if (built.plan.combined[k].unit == unit)
+        if (const auto one = length(run, k)) most->add(one->value, one->time);
+    return most;
+  }
+};
+
 }  // namespace
 
 std::vector<BeamVerdict> beam_verdicts(const RunResult& run, const RunResult* bonded) {
@@ -88,15 +113,35 @@ std::vector<BeamVerdict> beam_verdicts(const RunResult& run, const RunResult* bo
   return verdicts;
 }
 
-void add_storeys(const RunResult& run, const RunResult* bonded, std::vector<VerdictNumber>& numbers) {
-  const auto add = [&](std::string_view name, auto wanted) {
-    const std::optional<Reached> reached = largest_peak(run, wanted);
-    if (!reached) return;
-    const std::optional<Reached> other = bonded != nullptr ? largest_peak(*bonded, wanted) : std::nullopt;
-    add_number(numbers, name, *reached, other ? &*other : nullptr, 0);
-  };
-  add("max_storey_shear", [](const Request& column) { return column.storey; });
-  add("max_drift_ratio", [](const Request& column) { return column.below >= 0 && column.unit == "1"; });
+void add_storeys(const BuiltCase& built, const RunResult& run, const RunResult* bonded, VerdictNumbers& numbers) {
+  for (const Storeys& storeys : {Storeys{"max_storey_shear", "max_storey_shear_x", "max_storey_shear_y", "N"},
+                                 Storeys{"max_drift_ratio", "max_drift_ratio_x", "max_drift_ratio_y", "1"}}) {
+    const bool in_space = built.model.space.dimension == 3;
+    double least = 0;
+    const auto add = [&](std::vector<VerdictNumber>& to, std::string_view name, const auto& of) {
+      const std::optional<Reached> reached = of(run);
+      if (!reached) return;
+      const std::optional<Reached> other = bonded != nullptr ? of(*bonded) : std::nullopt;
+      add_number(to, name, *reached, other ? &*other : nullptr, least);
+    };
+    const auto all = [&](const RunResult& each) { return storeys.all(built, each); };
+    if (in_space)
+      least = noise_share * std::max(all(run).value_or(Reached()).value, bonded != nullptr ? all(*bonded).value_or(Reached()).value : 0);
+    if (in_space) add(numbers.whole, storeys.along_x, [&](const RunResult& each) { return storeys.along(each, 0); });
+    if (in_space) add(numbers.whole, storeys.along_y, [&](const RunResult& each) { return storeys.along(each, 1); });
+    add(numbers.whole, storeys.together, all);
+    for (std::size_t k = 0; k < built.plan.combined.size(); ++k) {
+      const CombinedRequest& storey = built.plan.combined[k];
+      if (storey.unit != storeys.unit) continue;
+      StoreyVerdict said{storey.name, {}};
+      for (const int axis : {0, 1})
+        add(said.numbers, axis == 0 ? storeys.along_x : storeys.along_y, [&](const RunResult& each) {
+          return storeys.along(each, axis, storey.components[static_cast<std::size_t>(axis)].front().column);
+        });
+      add(said.numbers, storeys.together, [&](const RunResult& each) { return storeys.length(each, k); });
+      numbers.storeys.push_back(std::move(said));
+    }
+  }
 }
 
 }  // namespace uplift

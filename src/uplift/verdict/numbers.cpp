@@ -307,7 +307,7 @@ VerdictNumbers numbers_of(const BuiltCase& built, const RunResult& run, const Ru
   VerdictNumbers numbers;
   if (bonded && (bonded->status != RunStatus::completed || run.status != RunStatus::completed)) bonded = nullptr;
   add_motions(built, run, bonded, numbers.whole);
-  add_storeys(run, bonded, numbers.whole);
+  add_storeys(built, run, bonded, numbers);
   numbers.beams = beam_verdicts(run, bonded);
   for (std::size_t k = 0; k < built.facts.size() && run.steps.size() > 0; ++k) {
     const bool is_base = k < built.bases();

@@ -53,12 +53,19 @@ struct BeamVerdict {
   std::vector<VerdictNumber> numbers;
 };
 
+/// In space: the largest shears or drift ratios of a storey, along both axes and together.
+struct StoreyVerdict {
+  std::string name;
+  std::vector<VerdictNumber> numbers;
+};
+
 struct VerdictNumbers {
   std::vector<VerdictNumber> whole;          // of the run
   std::vector<InterfaceVerdict> interfaces;  // bases first
   std::vector<Interval> full_loss;           // no base has any contact
   std::size_t bases() const { return static_cast<std::size_t>(std::ranges::count(interfaces, Role::base, &InterfaceVerdict::role)); }
   std::vector<BeamVerdict> beams;
+  std::vector<StoreyVerdict> storeys;
   std::vector<CriterionResult> criteria;
 };
 

@@ -205,6 +205,8 @@ void compare_steps(VerdictNumbers& numbers, const VerdictNumbers& coarse, StepCh
     compare_numbers(said.numbers, numbers_named(coarse.interfaces, said.name), said.name, here, check);
   }
   for (BeamVerdict& beam : numbers.beams) compare_numbers(beam.numbers, numbers_named(coarse.beams, beam.name), beam.name, scale, check);
+  for (StoreyVerdict& storey : numbers.storeys)
+    compare_numbers(storey.numbers, numbers_named(coarse.storeys, storey.name), storey.name, scale, check);
   judge(check);
 }
 

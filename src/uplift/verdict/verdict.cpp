@@ -241,6 +241,20 @@ void say_top(Verdict& verdict) {
   fact("max_drift_without_rotation", "Drift without base rotation", "deformation of the structure, ", false);
 }
 
+/// In space: the vector of every storey, and what it reaches along the axes.
+void say_storeys(Verdict& verdict) {
+  for (const StoreyVerdict& storey : verdict.numbers.storeys)
+    for (const auto& [name, label] : {std::pair{std::string("max_storey_shear"), "Storey shear, "}, {"max_drift_ratio", "Drift ratio, "}}) {
+      const VerdictNumber *number = find_number(storey.numbers, name), *x = find_number(storey.numbers, name + "_x"),
+                          *y = find_number(storey.numbers, name + "_y");
+      if (!number || !x || !y || is_negligible(*number)) continue;
+      verdict.facts.push_back(
+          {label + storey.name, text_of(*number),
+           fmt::format("{}along x {}, along y {}{}", number->change ? compared(*number) + ", " : "", text_of(*x), text_of(*y), at(*number)),
+           false, format_step_change(*number)});
+    }
+}
+
 void say_compared(const BuiltCase& built, const RunResult& bonded, Verdict& verdict) {
   if (bonded.status != RunStatus::completed) {
     verdict.paragraphs.push_back(
@@ -376,6 +390,7 @@ Verdict judge(const BuiltCase& built, const RunResult& run, const RunResult* bon
   say_forces(built, run, verdict);
   say_radiation(built, verdict);
   say_top(verdict);
+  say_storeys(verdict);
   if (bonded) say_compared(built, *bonded, verdict);
   say_consequence(floors, verdict);
   say_walls(verdict);

@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -32,14 +35,17 @@ Sum turned(const BuiltCase& built, int axis, double h) {
 }
 
 void take_off(Terms& from, const Terms& what) {
-  for (const auto& [kind, of, factor] : what) from.push_back({kind, of, -factor});
+  for (CombinedRequest::Term term : what) {
+    term.factor = -term.factor;
+    from.push_back(std::move(term));
+  }
 }
 
 /// Motion of the top relative to the base; `rigid`: without what the rotation of the base makes of it.
 std::optional<CombinedRequest> drift(const BuiltCase& built, std::string_view name, bool rigid) {
   const Space space = built.model.space;
   const auto height = [&](int node) { return built.model.nodes[static_cast<std::size_t>(node)].position[space.up()]; };
-  CombinedRequest made{std::string(name), {}};
+  CombinedRequest made{.name = std::string(name)};
   for (int axis = 0; axis < space.dimension; ++axis) {
     if (axis == space.up()) continue;
     Sum sum = displacement(built, built.top, space.dof(axis), 1);
@@ -53,12 +59,32 @@ std::optional<CombinedRequest> drift(const BuiltCase& built, std::string_view na
   return made;
 }
 
+/// In space: every storey whose shears, or drift ratios, are recorded along both axes.
+void add_storeys(BuiltCase& built) {
+  const int each = built.model.space.unknowns();
+  const auto node = [&](int unknown) { return built.model.nodes[static_cast<std::size_t>(unknown / each)].name; };
+  const std::vector<Request>& requests = built.plan.requests;
+  for (const Request& x : requests) {
+    const bool drift = x.below >= 0 && x.unit == "1";
+    if ((!x.level && !drift) || x.component != 0) continue;
+    const auto y = std::ranges::find_if(requests, [&](const Request& other) {
+      return other.component == 1 &&
+             (drift ? other.unit == "1" && other.below == x.below + 1 && other.unknown == x.unknown + 1 : other.level == x.level);
+    });
+    if (y == requests.end()) continue;
+    const std::string name = drift ? fmt::format("{} over {}", node(x.unknown), node(x.below)) : fmt::format("level {:.6g} m", *x.level);
+    const auto alone = [](const Request& of) { return Terms{{.kind = of.kind, .column = of.name}}; };
+    built.plan.combined.push_back({name, x.unit, {alone(x), alone(*y)}});
+  }
+}
+
 }  // namespace
 
 void add_combined(BuiltCase& built) {
+  if (built.model.space.dimension == 3) add_storeys(built);
   if (built.top < 0) return;
   const Space space = built.model.space;
-  CombinedRequest along{std::string(combined_top), {}}, up{std::string(combined_top_up), {}};
+  CombinedRequest along{.name = std::string(combined_top)}, up{.name = std::string(combined_top_up)};
   for (int axis = 0; axis < space.dimension; ++axis)
     if (Sum sum = recorded(built.plan, Column::displacement, built.model.at(built.top, space.dof(axis)), 1))
       (axis == space.up() ? up : along).components.push_back(std::move(*sum));

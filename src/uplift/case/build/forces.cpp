@@ -175,7 +175,8 @@ Request storey_shear(const CaseHistory& history, const BuiltCase& built) {
          fmt::format("{:.6g} m", level));
   Request request = column(history, fmt::format("{}.{:.6g}", history.quantity.name, level), "N",
                            std::make_shared<const SectionForces>(std::vector<std::vector<Part>>{std::move(parts)}));
-  request.storey = true;
+  request.level = level;
+  request.component = direction;
   return request;
 }
 
@@ -206,6 +207,7 @@ Request drift(const CaseHistory& history, const BuiltCase& built, int node) {
       request.unit = ratio ? "1" : "m";
       request.unknown = model.space.unknowns() * node + k;
       request.below = model.space.unknowns() * below + k;
+      request.component = k;
       request.factor = ratio ? 1 / height : 1;
       return request;
     }

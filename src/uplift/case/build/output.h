@@ -9,7 +9,8 @@ struct CaseNames;  // case/build/names.h
 
 /// The columns of the output: the automatic ones, then those that the case asks for. Sets plan.requests; uses top, base and facts.
 void add_requests(const Case&, const CaseNames& names, BuiltCase&);
-/// The motions of the top that the verdict makes of several columns: uses plan.requests, top, base and facts. Sets plan.combined.
+/// The motions of the top that the verdict makes of several columns, and the storey shears and drift ratios in space of which both axes are
+/// recorded: uses plan.requests, top, base and facts. Sets plan.combined.
 void add_combined(BuiltCase&);
 /// Their names: horizontal and vertical motion of the top, and its drift from the base with and without what the base's rotation makes of
 /// it.

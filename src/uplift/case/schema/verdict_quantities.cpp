@@ -13,7 +13,7 @@ namespace {
 
 constexpr bool whole = false, at_least = true, wall_too = true, of_beam = true;
 
-constexpr std::array<VerdictQuantity, 49> quantities{{
+constexpr std::array<VerdictQuantity, 53> quantities{{
     {"max_top_motion", "m", "largest horizontal motion of the top, over all directions", "top motion", whole},
     {"change_of_top_motion", "1", "change of the motion of the top compared with the bonded reference run", "change of top motion", whole},
     {"max_drift", "m", "largest horizontal motion of the top relative to the base, rotation of the base included", "drift of the top",
@@ -74,8 +74,12 @@ constexpr std::array<VerdictQuantity, 49> quantities{{
      false, of_beam},
     {"change_of_beam_moment", "1", "change of the largest bending moment compared with the bonded run", "change of beam moment", whole,
      false, true, false, of_beam},
-    {"max_storey_shear", "N", "largest of the storey shears that are recorded", "storey shear", whole},
-    {"max_drift_ratio", "1", "largest of the drift ratios that are recorded", "drift ratio", whole},
+    {"max_storey_shear_x", "N", "in space: largest of the storey shears along x that are recorded", "storey shear along x", whole},
+    {"max_storey_shear_y", "N", "in space: the same along y", "storey shear along y", whole},
+    {"max_storey_shear", "N", "largest of the storey shears that are recorded, in space of both axes together", "storey shear", whole},
+    {"max_drift_ratio_x", "1", "in space: largest of the drift ratios along x that are recorded", "drift ratio along x", whole},
+    {"max_drift_ratio_y", "1", "in space: the same along y", "drift ratio along y", whole},
+    {"max_drift_ratio", "1", "largest of the drift ratios that are recorded, in space of both axes together", "drift ratio", whole},
 }};
 
 }  // namespace

@@ -214,6 +214,13 @@ void write_verdict_numbers(ResultWriter& out, const Verdict& verdict, const std:
       out.text("name", beam.name, "name of the beam");
       write_numbers(out, beam.numbers, [](const VerdictQuantity& quantity) { return quantity.of_beam; });
     });
+    out.when(!numbers.storeys.empty())
+        .list("storeys", "in space, storeys of which both axes are recorded", numbers.storeys, [&](const StoreyVerdict& storey) {
+          out.text("name", storey.name, "level of the shear, or the nodes of the drift");
+          write_numbers(out, storey.numbers, [](const VerdictQuantity& quantity) {
+            return quantity.name.starts_with("max_storey_shear") || quantity.name.starts_with("max_drift_ratio");
+          });
+        });
     out.list("criteria", "criteria of the case", numbers.criteria, [&](const CriterionResult& result) { write_criterion(out, result); });
     write_floor_changes(out, floors);
   });
