@@ -72,6 +72,17 @@ TEST(EnergyDecay, LedgerClosesAtAnyStiffness) {
     }
 }
 
+/// A stage with another spectral radius, or with the trapezoidal rule, forgets what the filters hold: it counts as dissipated.
+TEST(EnergyDecay, LedgerClosesFromOneSchemeToAnother) {
+  Oscillator data;
+  data.behaviour = {"springs", {{"K_n", stiffness_for(10, 1e-3)}}};
+  Whole whole = make(data);
+  choose(whole, {"newton"}, {"none"});
+  whole.plan.stages = {settle(),         marching(1e-3, 777, 0.5), marching(1e-3, 777, 0.2), marching(5e-4, 1555, 0.2),
+                       march(1e-3, 333), marching(1e-3, 777, 0.8)};
+  closes(whole, "springs, from one scheme to another");
+}
+
 TEST(EnergyDecay, LedgerClosesForEveryLaw) {
   const double k = stiffness_for(10, 1e-3);
   const std::vector<Part> laws = {{"springs", {{"K_n", k}}},

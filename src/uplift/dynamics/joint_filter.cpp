@@ -1,5 +1,6 @@
 #include "uplift/dynamics/joint_filter.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <type_traits>
@@ -54,63 +55,65 @@ JointFilter::JointFilter(const Model& model, const Behaviours& behaviours, const
   }
 }
 
-void JointFilter::look(const State& now, Vector& tangent) const {
-  tangent.setZero(now.opening.size());
+void JointFilter::begin_anew(const State& now, FilterMemory& memory) const {
   for (const Block& block : blocks_) {
     if (block.law == nullptr || block.batch.rotations > 0) continue;
-    const int n = block.batch.points, components = block.batch.components;
+    const int n = block.batch.points, components = block.batch.components, normal = components - 1;
     Vector traction(block.rows()), end(block.rows()), slope(block.rows() * components), next(block.rows() * components),
-        memory(block.law->num_history(components) * n);
+        history(block.law->num_history(components) * n);
     const double* at = now.opening.data() + block.first;
     next.setZero();
     block.law->mean(block.batch, at, at, now.history.data() + block.first_history,
-                    {.traction = traction.data(), .slope = slope.data(), .now = memory.data(), .end = end.data(), .next = next.data()});
-    for (int c = 0; c < components; ++c) tangent.segment(block.first + c * n, n) = 2 * next.segment((c * components + c) * n, n);
+                    {.traction = traction.data(), .slope = slope.data(), .now = history.data(), .end = end.data(), .next = next.data()});
+    double stiffness[3] = {};
+    block.law->closed_stiffness(components, stiffness);
+    next *= 2;
+    const double* contact = next.data() + (normal * components + normal) * n;
+    for (int c = 0; c < components; ++c) {
+      const Beginning beginning{gain_, 0.5 * stiffness[normal], 0.5 * stiffness[c], c == normal};
+      const double* tangent = next.data() + (c * components + c) * n;
+      double *coefficient = memory.coefficient.data() + block.first + c * n, *lag = memory.opening.data() + block.first + c * n;
+      for_lanes(n, [&](const auto& here) { beginning.put(here, here(contact), here(tangent), Lanes(0), Lanes(0), coefficient, lag); });
+    }
   }
 }
 
 void JointFilter::take_over(const State& now) {
-  ready_ = nullptr;
-  storage_ = 0;
-  for (const Part& part : parts_)
-    for (int row = 0; row < part.components * part.points; ++row) {
-      const Index at = part.first + row;
-      storage_ += part.area[row % part.points] * now.filter.coefficient[at] * now.filter.opening[at] * now.filter.opening[at];
-    }
-  for (const Footing& footing : footings_) storage_ += now.filter.coefficient[footing.first];
-  storage_ *= 0.5 / (1 - pole_);
-}
-
-void JointFilter::begin(const State& now, double shrink, JointFilterInput& input) {
-  if (ready_ == &input && shrink == 1) return;
-  begin_anew(now, shrink, input);
-}
-
-/// From the memory of the state, not from what the end of the last step has left.
-void JointFilter::begin_anew(const State& now, double shrink, JointFilterInput& input) {
-  ready_ = nullptr;
-  const FilterMemory& memory = now.filter;
-  input.gain = gain_;
-  input.pole = pole_;
-  input.coefficient.resize(memory.opening.size());
-  input.lag.resize(memory.opening.size());
-  for (const Part& part : parts_) {
-    const int normal = part.components - 1;
-    const double* contact = memory.tangent.data() + part.first + normal * part.points;
-    for (int c = 0; c < part.components; ++c) {
-      const int first = part.first + c * part.points;
-      const Beginning beginning{gain_, 0.5 * part.stiffness[normal], 0.5 * part.stiffness[c], c == normal};
-      const double *tangent = memory.tangent.data() + first, *filtered = memory.opening.data() + first,
-                   *before = memory.coefficient.data() + first;
-      double *coefficient = input.coefficient.data() + first, *lag = input.lag.data() + first;
-      for_lanes(part.points,
-                [&](const auto& at) { beginning.put(at, at(contact), at(tangent), at(before), shrink * at(filtered), coefficient, lag); });
-    }
-  }
+  taken_over_ = {.gain = gain_, .pole = pole_, .coefficient = now.filter.coefficient, .lag = now.filter.opening};
+  ready_ = &taken_over_;
+  storage_ = now.filter.stored;
   for (Footing& footing : footings_) {
+    std::copy_n(now.filter.opening.data() + footing.first, footing.components, footing.filtered);
+    footing.stored = now.filter.coefficient[footing.first];
     look(footing, now);
-    begin_footing(footing, now, shrink, input);
+    begin_footing(footing, *ready_);
   }
+}
+
+void JointFilter::give(FilterMemory& memory) const {
+  if (ready_ == nullptr) return;
+  memory.coefficient = ready_->coefficient;
+  memory.opening = ready_->lag;
+  memory.stored = storage_;
+  for (const Footing& footing : footings_) {
+    std::copy_n(footing.filtered, footing.components, memory.opening.data() + footing.first);
+    memory.coefficient.segment(footing.first, footing.components).setZero();
+    memory.coefficient[footing.first] = footing.stored;
+  }
+}
+
+void JointFilter::shorten(double shrink) {
+  ready_->lag *= shrink;
+  for (Footing& footing : footings_) {
+    for (double& each : footing.filtered) each *= shrink;
+    begin_footing(footing, *ready_);
+  }
+}
+
+void JointFilter::begin(JointFilterInput& input) {
+  if (ready_ == &input) return;
+  input = *ready_;
+  ready_ = &input;
 }
 
 /// Elastic openings and C = b * slope of the law there.
@@ -121,11 +124,11 @@ void JointFilter::look(Footing& footing, const State& now) const {
   for (int i = 0; i < n * n; ++i) footing.coefficient[i] *= gain_;
 }
 
-void JointFilter::begin_footing(Footing& footing, const State& now, double shrink, JointFilterInput& input) const {
-  footing.components == 3 ? begin_rows<3>(footing, now, shrink, input) : begin_rows<6>(footing, now, shrink, input);
+void JointFilter::begin_footing(Footing& footing, JointFilterInput& input) {
+  footing.components == 3 ? begin_rows<3>(footing, input) : begin_rows<6>(footing, input);
 }
 
-double JointFilter::end_footing(Footing& footing, const InterfaceSolution& solution, double to_mean, const State& now, State& next,
+double JointFilter::end_footing(Footing& footing, const InterfaceSolution& solution, double to_mean, const State& now, const State& next,
                                 JointFilterInput& input) const {
   return footing.components == 3 ? end_rows<3>(footing, solution, to_mean, now, next, input)
                                  : end_rows<6>(footing, solution, to_mean, now, next, input);
@@ -133,13 +136,13 @@ double JointFilter::end_footing(Footing& footing, const InterfaceSolution& solut
 
 /// After look(): what the filter remembers is scaled down where it would store more with the new C. N: rows of the point.
 template <int N>
-void JointFilter::begin_rows(Footing& footing, const State& now, double shrink, JointFilterInput& input) const {
+void JointFilter::begin_rows(Footing& footing, JointFilterInput& input) {
   const int first = footing.first;
   const Eigen::Map<const Fixed<N, N>> coefficient(footing.coefficient);
-  Fixed<N, 1> lag = shrink * now.filter.opening.segment<N>(first), pull = coefficient * lag;
-  const double stored = now.filter.coefficient[first], wanted = lag.dot(pull);
-  if (wanted > stored) {
-    const double scale = std::sqrt(stored / wanted);
+  Fixed<N, 1> lag = Eigen::Map<const Fixed<N, 1>>(footing.filtered), pull = coefficient * lag;
+  const double wanted = lag.dot(pull);
+  if (wanted > footing.stored) {
+    const double scale = std::sqrt(footing.stored / wanted);
     lag *= scale, pull *= scale;
   }
   Eigen::Map<Fixed<N, 1>>(footing.lag) = lag;
@@ -150,7 +153,7 @@ void JointFilter::begin_rows(Footing& footing, const State& now, double shrink, 
 /// The same as for the rows of other points with the matrix C instead of c and the elastic increment; returns the dissipation less what the
 /// filter has stored before.
 template <int N>
-double JointFilter::end_rows(Footing& footing, const InterfaceSolution& solution, double to_mean, const State& now, State& next,
+double JointFilter::end_rows(Footing& footing, const InterfaceSolution& solution, double to_mean, const State& now, const State& next,
                              JointFilterInput& input) const {
   using Rows = Fixed<N, 1>;
   const int first = footing.first;
@@ -170,17 +173,16 @@ double JointFilter::end_rows(Footing& footing, const InterfaceSolution& solution
   } else {
     dissipated = added.dot(solution.opening.segment<N>(first) - now.opening.segment<N>(first));
   }
-  next.filter.opening.segment<N>(first) = filtered;
-  next.filter.coefficient.segment<N>(first).setZero();
-  next.filter.coefficient[first] = stored;
-  begin_rows<N>(footing, next, 1, input);
+  Eigen::Map<Rows>(footing.filtered) = filtered;
+  footing.stored = stored;
+  begin_rows<N>(footing, input);
   return dissipated;
 }
 
 /// With theta c the part of the coefficient that took effect, d_f the lag and d_f,1 the filtered increment after the step: storage
 /// A theta c d_f,1^2/(2 (1 - a)), dissipation A theta c ((1 + a)/2 (d - d_f)^2 - d_f^2/(2 (1 - a))) and the storage before, which is larger
 /// than what the last term takes where theta c has fallen.
-void JointFilter::end(const InterfaceProblem& problem, const InterfaceSolution& solution, const State& now, State& next,
+void JointFilter::end(const InterfaceProblem& problem, const InterfaceSolution& solution, const State& now, const State& next,
                       JointFilterInput& input) {
   // copies: numbers written through pointers might be members
   const double to_mean = 1 / problem.model->scale, pole = pole_, gain = gain_, loss = 0.5 * (1 + pole), store = 0.5 / (1 - pole);
@@ -194,13 +196,10 @@ void JointFilter::end(const InterfaceProblem& problem, const InterfaceSolution& 
       const Beginning beginning{gain, 0.5 * part.stiffness[normal], 0.5 * part.stiffness[c], is_normal};
       const double *plain = solution.plain.data() + first, *force = solution.force.data() + first, *to = solution.opening.data() + first,
                    *from = now.opening.data() + first, *slope = slopes + (c * part.components + c) * n;
-      double *coefficient = input.coefficient.data() + first, *lag = input.lag.data() + first,
-             *coefficient_next = next.filter.coefficient.data() + first, *filtered_next = next.filter.opening.data() + first,
-             *tangent_next = next.filter.tangent.data() + first;
+      double *coefficient = input.coefficient.data() + first, *lag = input.lag.data() + first;
       for_lanes(
           n, [ =, &dissipated, &storage ](const auto& at) __attribute__((always_inline)) {
             const Lanes zero = 0, tangent = 2 * at(slope), here = at(coefficient), bears = at(force), size = at(area), before = at(lag);
-            at.put(tangent_next, tangent);
             // most registers go on as they are: in contact, where nothing was cut off, or apart
             if constexpr (is_normal) {
               if (!any(gain * tangent != here || bears == zero)) {
@@ -208,14 +207,9 @@ void JointFilter::end(const InterfaceProblem& problem, const InterfaceSolution& 
                 const Lanes filtered = pole * before + (1 - pole) * increment;
                 dissipated += weight * (loss * ahead * ahead - store * before * before);
                 storage += weight * filtered * filtered;
-                at.put(coefficient_next, here);
-                at.put(filtered_next, filtered);
                 return at.put(lag, filtered);
               }
-              if (!any(here >= zero || tangent >= beginning.closed || bears != zero || at(plain) != zero)) {
-                at.put(coefficient_next, zero);
-                return at.put(filtered_next, zero);
-              }
+              if (!any(here >= zero || tangent >= beginning.closed || bears != zero || at(plain) != zero)) return;
             }
             const Lanes increment = at(to) - at(from), ahead = increment - before;
             const Lanes added = to_mean * bears - size * at(plain), wanted = size * here * ahead;  // N
@@ -225,8 +219,6 @@ void JointFilter::end(const InterfaceProblem& problem, const InterfaceSolution& 
             const Lanes filtered = choose(acts, pole * before + (1 - pole) * increment, zero), weight = size * kept;
             dissipated += weight * (loss * ahead * ahead - store * before * before) + choose(acts, zero, added * increment);
             storage += weight * filtered * filtered;
-            at.put(coefficient_next, kept);
-            at.put(filtered_next, filtered);
             beginning.put(at, is_normal ? tangent : 2 * at(contact), tangent, kept, filtered, coefficient, lag);
           });
     };
@@ -236,7 +228,7 @@ void JointFilter::end(const InterfaceProblem& problem, const InterfaceSolution& 
   double lost = sum(dissipated), stored = sum(storage);
   for (Footing& footing : footings_) {
     lost += end_footing(footing, solution, to_mean, now, next, input);
-    stored += next.filter.coefficient[footing.first];
+    stored += footing.stored;
   }
   dissipated_ = lost + storage_;
   storage_ = store * stored;

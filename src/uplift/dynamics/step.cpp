@@ -79,7 +79,7 @@ Outcome Stepper::solve(Level& level) {
   StepSolver* last = level.solver.get();
   StepStart start{now_.displacement, now_.opening, now_.history};
   if (joint_filter_ != nullptr) {
-    joint_filter_->begin(now_, filter_shrink(level), last->filter());
+    joint_filter_->begin(last->filter());
     start.filter = &last->filter();
   }
   if (newton_ == nullptr) {
@@ -167,12 +167,11 @@ void Stepper::right_hand_side(const Level& level) {
   const Eigen::Index n = bulk_.unknowns;
   if (filtered_) {
     const double *mv = momentum_now_.data(), *filtered_stiff = filtered_stiff_.data(), *filtered_momentum = filtered_momentum_.data();
-    const double w = 1 / options_.scheme.stretch(), remembered = options_.scheme.gain * filter_shrink(level), inertia = level.mass_velocity;
+    const double w = level.share, gain = options_.scheme.gain, inertia = level.mass_velocity;
     small::with_size(n, [=](auto count) {
 #pragma omp simd
       for (Eigen::Index i = 0; i < count; ++i)
-        right[i] =
-            w * (f0[i] + f1[i] - 2 * (ku[i] - remembered * filtered_stiff[i]) + inertia * (mv[i] - remembered * filtered_momentum[i]));
+        right[i] = w * (f0[i] + f1[i] - 2 * (ku[i] - gain * filtered_stiff[i]) + inertia * (mv[i] - gain * filtered_momentum[i]));
     });
     if (newton_ != nullptr) right_ -= w * plastic_now_.force;
     return;
@@ -221,14 +220,13 @@ bool Stepper::kinematics(const Level& level) {
   double *u1 = next_.displacement.data(), *v1 = next_.velocity.data(), *a1 = next_.acceleration.data();
   double size = 0;
   if (filtered_) {
-    const double *filtered = now_.filter.velocity.data(), remembered = s.gain * filter_shrink(level), rate = 1 / dt,
-                 inverse = 2 / s.stretch();
+    const double *filtered = now_.filter.velocity.data(), gain = s.gain, rate = 1 / dt, inverse = 2 * level.share;
     small::with_size(bulk_.unknowns, [=, &size](auto count) {
       double sum = 0;
 #pragma omp simd reduction(+ : sum)
       for (Eigen::Index i = 0; i < count; ++i) {
         u1[i] = u0[i] + du[i];
-        v1[i] = v0[i] + inverse * (rate * du[i] - v0[i] + remembered * filtered[i]);
+        v1[i] = v0[i] + inverse * (rate * du[i] - v0[i] + gain * filtered[i]);
         sum += du[i] * du[i];
       }
       size = sum;
@@ -292,6 +290,7 @@ bool Stepper::try_step(Level& level) {
     why_ = mass_failure_.empty() ? level.why : "the mass matrix: " + mass_failure_;
     return false;
   }
+  if (filtered_ && now_.filter.step > level.step) shorten_filters(level.step);
   next_.time = now_.time + level.step;
   force_at(next_.time, force_next_);
   if (gap_moves_) move_gap(now_.time, next_.time);

@@ -85,6 +85,8 @@ class Stepper {
   /// Goes on where another Stepper of the same stage has been: takes the place of `start`. After `reenter` of that one both take the same
   /// steps to the last bit.
   void resume(MarchState from);
+  /// The state with what the filters of the interfaces remember, which that of `state` lacks: for another Stepper.
+  State whole_state() const;
   /// Where the march stands; called between two steps.
   MarchState march_state() const;
   /// Drops first guesses and makes everything anew that follows from the state: the next step depends on the march state alone.
@@ -134,8 +136,8 @@ class Stepper {
   Vector& momentum_end() { return filtered_ ? momentum_next_ : momentum_now_; }
   void right_hand_side(const Level& level);
   Vector stiffness_for_massless() const;
-  double filter_shrink(const Level& level) const;
   void begin_filters();
+  void shorten_filters(double step);
   void advance_filters(const Level& level);
   bool kinematics(const Level& level);
   Sparse matrix_of(const Level& level) const;
@@ -209,6 +211,7 @@ class Stepper {
   PlasticState plastic_now_, plastic_next_;
   std::unique_ptr<JointFilter> joint_filter_;  // null without filters or interfaces
   Vector filtered_stiff_, filtered_momentum_;  // K d_u, M d_v of now_
+  double filter_loss_ = 0, filter_store_ = 0;  // b (1 + a)/2, b/(2 (1 - a))
   Vector velocity_before_;                     // at the beginning of the nominal step, of its last one that was divided; path average
   State now_, next_;
   Vector force_now_, force_next_, stiff_now_, momentum_now_;  // f, K u, M v

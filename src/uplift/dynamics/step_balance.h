@@ -25,10 +25,7 @@ class StepBalance {
   static StepBalance mean(const State& before, const State& after, double step, double gain = 0) {
     StepBalance made{before, after, before.velocity, after.velocity, 0.5, 0};
     made.step_ = step;
-    if (gain > 0 && before.filter.step > 0) {
-      made.gain_ = gain;
-      made.lag_share_ = before.filter.step > step ? step / before.filter.step : 1;
-    }
+    if (before.filter.step > 0) made.gain_ = gain;
     return made;
   }
   static StepBalance weighted(const State& before, const State& after, double alpha_f, double alpha_m) {
@@ -38,7 +35,7 @@ class StepBalance {
   double displacement(Index i) const {
     const double mean = of_begin_ * before_->displacement[i] + of_end_ * after_->displacement[i];
     if (gain_ == 0) return mean;
-    return mean + gain_ * (after_->displacement[i] - before_->displacement[i] - lag_share_ * before_->filter.displacement[i]);
+    return mean + gain_ * (after_->displacement[i] - before_->displacement[i] - before_->filter.displacement[i]);
   }
   double velocity(Index i) const {
     if (step_ > 0) return (after_->displacement[i] - before_->displacement[i]) / step_;
@@ -86,8 +83,8 @@ class StepBalance {
   const State *before_, *after_;
   const Vector *first_, *last_;  // velocities of both ends for a mean, else accelerations
   double of_begin_, of_end_, first_share_;
-  double step_ = 0;                  // > 0: means over a step
-  double gain_ = 0, lag_share_ = 1;  // of the filters of the scheme
+  double step_ = 0;  // > 0: means over a step
+  double gain_ = 0;  // of the filters of the scheme
   bool rests_ = false;
 };
 

@@ -185,7 +185,8 @@ void Stepper::start(State state, const Ledger* before) {
     give_back_free_memory();  // of the factorisation
     pair_ = solver_.pair(bulk_.stiffness_matrix, bulk_.mass_matrix);
   }
-  if (!filtered_) now_.filter = {};
+  const bool forgets = now_.filter.gain != options_.scheme.gain;  // what the filters of another scheme hold
+  if (forgets) now_.filter = {};
   follow_state();
   energies_ = before != nullptr ? before->energies : Energies{};
   energies_.kinetic = 0.5 * now_.velocity.dot(momentum_now_);
@@ -194,7 +195,7 @@ void Stepper::start(State state, const Ledger* before) {
   energies_.stored = interface_energy_.stored;
   energies_.interface_dissipated = interface_energy_.dissipated + energies_.friction;
   impact_loss_ = energies_.impact;
-  if (!filtered_) energies_.algorithmic += std::exchange(energies_.filter, 0);  // another scheme forgets what the filters hold
+  if (forgets) energies_.algorithmic += std::exchange(energies_.filter, 0);
   origin_ = energies_.sum() - energies_.residual;
   initial_energy_ =
       before != nullptr ? before->initial_energy : energies_.kinetic + energies_.strain + energies_.stored + energies_.interface_dissipated;
@@ -212,8 +213,14 @@ void Stepper::follow_state() {
   interface_energy_.update(blocks_of(model_, behaviours_).blocks, now_.opening, now_.history);
 }
 
+State Stepper::whole_state() const {
+  State state = now_;
+  if (joint_filter_ != nullptr) joint_filter_->give(state.filter);
+  return state;
+}
+
 MarchState Stepper::march_state() const {
-  MarchState march{now_, ledger(), counts_, start_time_, origin_, {}};
+  MarchState march{whole_state(), ledger(), counts_, start_time_, origin_, {}};
   for (std::size_t halving = 0; halving < levels_.size(); ++halving)
     if (levels_[halving] != nullptr) march.sizes.push_back(static_cast<int>(halving));
   return march;
@@ -243,6 +250,7 @@ void Stepper::reenter() {
     if (level != nullptr && level->solver != nullptr) level->solver->forget();
   impact_scratch_ = {};
   interface_energy_ = {};
+  if (joint_filter_ != nullptr) joint_filter_->give(now_.filter);
   if (newton_ != nullptr) {
     newton_->forget();
     plastic_now_ = yielding_.state(now_.bulk_history);

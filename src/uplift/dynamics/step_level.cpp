@@ -21,6 +21,7 @@ Stepper::Level& Stepper::make_level(int halving) {
   const double dt = made.step * s.stretch(), w = 1 - s.alpha_f;
   made.damping = s.gamma / (s.beta * dt);
   made.mass = (1 - s.alpha_m) / (w * s.beta * dt * dt);
+  made.share = 1 / s.stretch();
   made.mass_velocity = (1 - s.alpha_m) / (w * s.beta * dt);
   made.mass_acceleration = ((1 - s.alpha_m) * (1 / (2 * s.beta) - 1) - s.alpha_m) / w;
   made.damping_velocity = 1 - s.gamma / s.beta + s.alpha_f / w;

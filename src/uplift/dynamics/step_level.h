@@ -14,6 +14,7 @@ namespace uplift {
 struct Stepper::Level {
   double step = 0;
   double mass = 0, damping = 0;  // K_eff = K + damping C + mass M
+  double share = 1;              // 1/(1 + 2 b)
   double mass_velocity = 0, mass_acceleration = 0, damping_velocity = 0, damping_acceleration = 0;
   std::unique_ptr<StepSolver> solver;
   std::shared_ptr<const BulkFactor> tangent;  // the last one of yielding solids, whose analysis serves the next one

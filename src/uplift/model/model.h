@@ -163,16 +163,18 @@ Vector free_values(const Model& model, const std::vector<std::pair<int, double>>
 
 /// What the scheme of filtered energy decay remembers (dynamics/joint_filter.h); empty with other schemes.
 struct FilterMemory {
+  double gain = 0;                // b of the scheme that remembers; 0: none
   double step = 0;                // s that the filtered increments belong to; 0: nothing is remembered
   Vector displacement, velocity;  // filtered increments of the free unknowns
-  Vector opening;                 // interface rows: filtered increments [m]
-  Vector coefficient;             // and their coefficients c [Pa/m]; of a point with rotations d_f . C d_f [J] in its first row
-  Vector tangent;                 // interface rows: slope of the law at the present opening [Pa/m]
+  // Interface rows, as the step to come needs them: lags d_f [m] and coefficients c [Pa/m], negative where a point is open (laws/filter.h);
+  // of a point with rotations filtered increments [m, rad] and, in its first row, d_f . C d_f [J]. In the state that a march hands out.
+  Vector opening, coefficient;
+  double stored = 0;  // J, by the filters of the interfaces
 
   void swap(FilterMemory& other) noexcept {
-    std::swap(step, other.step);
-    displacement.swap(other.displacement), velocity.swap(other.velocity), opening.swap(other.opening);
-    coefficient.swap(other.coefficient), tangent.swap(other.tangent);
+    std::swap(gain, other.gain), std::swap(step, other.step), std::swap(stored, other.stored);
+    displacement.swap(other.displacement), velocity.swap(other.velocity);
+    opening.swap(other.opening), coefficient.swap(other.coefficient);
   }
 };
 

@@ -279,7 +279,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   recorder.finish();
   equilibrium.finish(run_.result.equilibrium);
   sum_up(stage.step);
-  run_.state = stepper.state();
+  run_.state = stepper.whole_state();
   seen_ = &run_.state;
   run_.ledger = stepper.ledger();
   run_.marched = run_.stage;

@@ -81,7 +81,7 @@ void list_parts(Archive& archive, T& ledger) {
 
 template <class Archive, SameAs<FilterMemory> T>
 void list_parts(Archive& archive, T& memory) {
-  archive(memory.step, memory.displacement, memory.velocity, memory.opening, memory.coefficient, memory.tangent);
+  archive(memory.gain, memory.step, memory.displacement, memory.velocity, memory.opening, memory.coefficient, memory.stored);
 }
 
 template <class Archive, SameAs<State> T>

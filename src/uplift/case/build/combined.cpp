@@ -65,14 +65,14 @@ void add_storeys(BuiltCase& built) {
   const auto node = [&](int unknown) { return built.model.nodes[static_cast<std::size_t>(unknown / each)].name; };
   const std::vector<Request>& requests = built.plan.requests;
   for (const Request& x : requests) {
-    const bool drift = x.below >= 0 && x.unit == "1";
-    if ((!x.level && !drift) || x.component != 0) continue;
+    const bool is_drift = x.below >= 0 && x.unit == "1";
+    if ((!x.level && !is_drift) || x.component != 0) continue;
     const auto y = std::ranges::find_if(requests, [&](const Request& other) {
       return other.component == 1 &&
-             (drift ? other.unit == "1" && other.below == x.below + 1 && other.unknown == x.unknown + 1 : other.level == x.level);
+             (is_drift ? other.unit == "1" && other.below == x.below + 1 && other.unknown == x.unknown + 1 : other.level == x.level);
     });
     if (y == requests.end()) continue;
-    const std::string name = drift ? fmt::format("{} over {}", node(x.unknown), node(x.below)) : fmt::format("level {:.6g} m", *x.level);
+    const std::string name = is_drift ? fmt::format("{} over {}", node(x.unknown), node(x.below)) : fmt::format("level {:.6g} m", *x.level);
     const auto alone = [](const Request& of) { return Terms{{.kind = of.kind, .column = of.name}}; };
     built.plan.combined.push_back({name, x.unit, {alone(x), alone(*y)}});
   }

@@ -130,7 +130,7 @@ void FreeField::march(const std::vector<Stage>& stages) {
       if (!stepper.advance()) why_ = stepper.why();
       keep(model, stepper.state());
     }
-    state = stepper.state();
+    state = stepper.whole_state();
     ledger = stepper.ledger();
     before = &stage;
   }

@@ -87,34 +87,43 @@ template <int R>
   if (descend<R>(evaluation.stiffness, x)) std::copy_n(x, R, z);
 }
 
-/// After a step that the law bent in: H of the step to come, in which it goes on straight, and with a joint filter its sums.
+/// After a step that the law bent in: H of the step to come, in which it goes on straight, and with a joint filter its sums. Points in
+/// contact then have the coefficient gain * 2 next, so that their part of H is that of the filter but for a factor.
 template <int R, bool filters>
-void go_on(const FusedEvaluation& evaluation, FilterSums& sums) {
-  Lanes gram[R][R] = {}, filter_gram[R][R] = {}, lag[R] = {};
+void go_on(const FusedEvaluation& evaluation, double gain, FilterSums& sums) {
+  Lanes gram[R][R] = {}, open_gram[R][R] = {}, lag[R] = {};
+  bool opens = false;
   for_lanes(evaluation.points, [&](const auto& at) {
     const Lanes next = at(evaluation.next);
-    Lanes slope = 2 * at(evaluation.area) * next, filter = 0;  // see Newton::go_on
+    Lanes slope = 2 * at(evaluation.area) * next;  // see Newton::go_on
     if constexpr (filters) {
-      const Lanes weight = evaluation.scale * at(evaluation.area), coefficient = at(evaluation.coefficient);
-      // open at the start: the traction at the end where it dissipates
-      slope = choose(coefficient < Lanes(0), weight * (next + larger(next, Lanes(0))), slope);
-      filter = weight * larger(coefficient, Lanes(0));
-    }
-    for (int j = 0; j < R; ++j) {
-      const Lanes column = at(evaluation.factor + j * evaluation.stride), weighted = slope * column;
-      for (int i = j; i < R; ++i) gram[j][i] += weighted * at(evaluation.factor + i * evaluation.stride);
-      if constexpr (filters) {
-        const Lanes filtered = filter * column;
-        lag[j] += filtered * at(evaluation.lag);
-        for (int i = j; i < R; ++i) filter_gram[j][i] += filtered * at(evaluation.factor + i * evaluation.stride);
+      const LaneMask open = at(evaluation.coefficient) < Lanes(0);
+      if (any(open && next != Lanes(0))) {  // open at the start: the traction at the end where it dissipates
+        opens = true;
+        const Lanes at_end = choose(open, evaluation.scale * at(evaluation.area) * (next + larger(next, Lanes(0))), Lanes(0));
+        for (int j = 0; j < R; ++j)
+          for (int i = j; i < R; ++i)
+            open_gram[j][i] += at_end * at(evaluation.factor + j * evaluation.stride) * at(evaluation.factor + i * evaluation.stride);
+        slope = choose(open, Lanes(0), slope);
       }
     }
+    for (int j = 0; j < R; ++j) {
+      const Lanes weighted = slope * at(evaluation.factor + j * evaluation.stride);
+      for (int i = j; i < R; ++i) gram[j][i] += weighted * at(evaluation.factor + i * evaluation.stride);
+      if constexpr (filters) lag[j] += weighted * at(evaluation.lag);
+    }
   });
+  const double of_filter = evaluation.scale * gain;
   for (int j = 0; j < R; ++j) {
-    for (int i = j; i < R; ++i) evaluation.stiffness[j * R + i] = evaluation.stiffness[i * R + j] = sum(gram[j][i]) + (i == j ? 1 : 0);
-    if constexpr (!filters) continue;
-    sums.lag[j] = sum(lag[j]);
-    for (int i = j; i < R; ++i) sums.stiffness[j * R + i] = sums.stiffness[i * R + j] = sum(filter_gram[j][i]);
+    for (int i = j; i < R; ++i) {
+      double entry = sum(gram[j][i]);
+      if constexpr (filters) {
+        sums.stiffness[j * R + i] = sums.stiffness[i * R + j] = of_filter * entry;
+        if (opens) entry += sum(open_gram[j][i]);
+      }
+      evaluation.stiffness[j * R + i] = evaluation.stiffness[i * R + j] = entry + (i == j ? 1 : 0);
+    }
+    if constexpr (filters) sums.lag[j] = of_filter * sum(lag[j]);
   }
 }
 
@@ -124,7 +133,7 @@ template <int R, bool filters>
   const FusedEvaluation& evaluation = work.evaluation;
   if (!fused) pull_at_end<R>(evaluation);
   if (work.bent || (filters && !fused))
-    go_on<R, filters>(evaluation, work.filter);
+    go_on<R, filters>(evaluation, problem.filter.gain, work.filter);
   else if (filters)
     advance_lag<R>(problem.filter.pole, work.filter);
   if constexpr (filters)
