@@ -104,8 +104,8 @@ struct CombinedRequest {
     double factor = 1;
     std::string column = {};  // its name, where kind and `of` do not tell it from others
   };
-  std::string name, unit = "m";               // N: storey shear, 1: drift ratio
-  std::vector<std::vector<Term>> components;  // sums of columns, at right angles; one alone keeps its sign. At most two
+  std::string name, unit = "m";                    // N: storey shear, 1: drift ratio
+  std::vector<std::vector<Term>> components = {};  // sums of columns, at right angles; one alone keeps its sign. At most two
 };
 
 /// The first column of this kind and this unknown (of a motion of a node, no drift) or interface; -1: there is none.
