@@ -248,10 +248,10 @@ void say_storeys(Verdict& verdict) {
       const VerdictNumber *number = find_number(storey.numbers, name), *x = find_number(storey.numbers, name + "_x"),
                           *y = find_number(storey.numbers, name + "_y");
       if (!number || !x || !y || is_negligible(*number)) continue;
-      verdict.facts.push_back(
-          {label + storey.name, text_of(*number),
-           fmt::format("{}along x {}, along y {}{}", number->change ? compared(*number) + ", " : "", text_of(*x), text_of(*y), at(*number)),
-           false, format_step_change(*number)});
+      verdict.facts.push_back({label + storey.name, text_of(*number),
+                               fmt::format("{}along x {}, along y {}, {}", number->change ? compared(*number) + ", " : "", text_of(*x),
+                                           text_of(*y), at(*number)),
+                               false, format_step_change(*number)});
     }
 }
 
