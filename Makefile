@@ -70,7 +70,7 @@ layers:            ## the order of the layers
 tidy:              ## clang-tidy on what the project exists for: laws, interfaces, contact, the condensed step
 	scripts/tidy.sh
 
-asan:              ## the tests but the long ones, those of verification and of the documentation under AddressSanitizer and UndefinedBehaviorSanitizer
+asan:              ## the tests but the long ones, those of verification, of the documentation and of the examples under AddressSanitizer and UndefinedBehaviorSanitizer
 	cmake --preset asan
 	cmake --build build/asan
 	ctest --test-dir build/asan --output-on-failure -j 2 -LE long

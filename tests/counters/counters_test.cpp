@@ -24,10 +24,6 @@ std::atomic<bool> counting{false};
 
 }  // namespace
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool can_count = false;  // the sanitizer has a malloc of its own
-#else
-constexpr bool can_count = true;
 // Every allocation of the program passes here: operator new calls malloc, and so does Eigen.
 extern "C" void* malloc(std::size_t size) {
   using Malloc = void* (*)(std::size_t);
@@ -35,7 +31,6 @@ extern "C" void* malloc(std::size_t size) {
   if (counting.load(std::memory_order_relaxed)) allocations.fetch_add(1, std::memory_order_relaxed);
   return next(size);
 }
-#endif
 
 namespace uplift::whole::counters_test {
 namespace {
@@ -111,7 +106,6 @@ long allocated_by_steps(Whole& whole, const Part& rule = {"average_acceleration"
 }
 
 TEST(Counters, CountingCounts) {
-  if (!can_count) GTEST_SKIP() << "allocations cannot be counted under the address sanitizer";
   counting = true;
   allocations = 0;
   std::vector<double>* list = new std::vector<double>(1000);
@@ -123,7 +117,6 @@ TEST(Counters, CountingCounts) {
 }
 
 TEST(Counters, NoAllocationAfterTheFirstStep) {
-  if (!can_count) GTEST_SKIP() << "allocations cannot be counted under the address sanitizer";
   const Part sdm{"sdm", {{"K_n", 2e8}, {"F_u", 0.0}, {"G_f", 1000.0}, {"F_c", -1e3}, {"tangential", "none"}}};
   const Part tough{"sdm", {{"K_n", 2e8}, {"F_u", 2e4}, {"G_f", 20.0}, {"F_c", -1e3}, {"tangential", "none"}}};
   const Part rubbing{"springs", {{"K_n", 2e8}, {"tangential", "coulomb"}, {"friction", 0.3}}};
@@ -154,7 +147,6 @@ TEST(Counters, NoAllocationAfterTheFirstStep) {
 
 /// Room for the records of floors is taken when a stage begins; the accelerations of the balance need none.
 TEST(Counters, NoAllocationOfFloors) {
-  if (!can_count) GTEST_SKIP() << "allocations cannot be counted under the address sanitizer";
   for (const std::string rule : {"average_acceleration", "hht"}) {
     Whole whole = footing(springs(2e8), "newton", "none", 0.02);
     FloorRequest floor;
@@ -168,7 +160,6 @@ TEST(Counters, NoAllocationOfFloors) {
 
 /// Updates of yielding solids use the room that the first one took: elastic ones, those on the cone and those at the apex.
 TEST(Counters, NoAllocationOfYieldingSolids) {
-  if (!can_count) GTEST_SKIP() << "allocations cannot be counted under the address sanitizer";
   DruckerPragerParameters law;
   law.elastic = {5e7, 0.3, 1900};
   law.cohesion = 1e4;
@@ -204,7 +195,6 @@ TEST(Counters, NoAllocationOfYieldingSolids) {
 }
 
 TEST(Counters, NoAllocationOfSeveralInterfaces) {
-  if (!can_count) GTEST_SKIP() << "allocations cannot be counted under the address sanitizer";
   const Part sdm{"sdm", {{"K_n", 3e8}, {"F_u", 2e4}, {"G_f", 20.0}, {"F_c", -1e3}, {"tangential", "open_free"}}};
   const Part elastic{"springs", {{"K_n", 3e8}, {"tangential", "none"}}};
   const Part unilateral{"unilateral"}, coulomb{"coulomb", {{"friction", 0.3}}};
@@ -323,7 +313,6 @@ TEST(Counters, OneFactorisationPerStepSize) {
 /// A cut makes of each cell two parts (the nodes of their pieces), a section (its corners) and the nodes of drawings: nothing else needs
 /// memory of its own, neither the clipping nor the search for nodes and faces that cells share.
 TEST(Counters, AllocationsOfACutCell) {
-  if (!can_count) GTEST_SKIP() << "allocations cannot be counted under the address sanitizer";
   const auto allocated = [](Cell cell, const Vec3& normal, int cells) {
     const std::vector<double> across = uniform_lines(0, cells, cells), up = uniform_lines(0, 1, 1);
     Mesh mesh = info(cell).dimension == 2 ? rectangle(across, up, cell) : box(across, across, up, cell);
