@@ -151,6 +151,8 @@ class Describe(CliTest):
             part = re.match(r"  ([\w.]+)", line)
             if part and family and family != "more":
                 described += 1
+                if sanitized() and described % 8:  # a tenth of a second each
+                    continue
                 done = self.uplift("describe", family, part.group(1))
                 self.assertIn("parameters" if family != "section" else "meaning", done.stdout)
         self.assertGreater(described, 40)
