@@ -1,8 +1,8 @@
-// Tables made from summary.json and trust.json: runs, floor spectra, trust bands, stiffness sweep.
+// Tables made from summary.json and trust.json: runs, storeys, floor spectra, trust bands, stiffness sweep.
 import { NEGLIGIBLE } from "./format";
-import { format_quantity, format_within, percent, significant } from "./quantity";
+import { format_change, format_quantity, format_within, percent, significant } from "./quantity";
 import { quantity_of, type Catalog } from "./result_verdict";
-import type { FloorSummary, RunSummary, SoilSummary, Summary, Trust } from "./summary";
+import type { FloorSummary, ResultNumbers, RunSummary, SoilSummary, Summary, Trust } from "./summary";
 import type { Column, ColumnKind, Row, Table } from "./types";
 
 function column(key: string, label: string, kind: ColumnKind, unit = "", digits?: number): Column {
@@ -173,6 +173,40 @@ function trust_tables(trust: Trust, catalog: Catalog): Table[] {
   ];
 }
 
+function storey_row(catalog: Catalog, storey: string, numbers: ResultNumbers, name: string, quantity: string): Row[] {
+  const resultant = numbers[name];
+  if (!resultant) return [];
+  const row: Row = { storey, quantity };
+  for (const [key, number] of [["x", numbers[`${name}_x`]], ["y", numbers[`${name}_y`]], ["length", resultant]] as const) {
+    if (!number) continue;
+    row[key] = format_within(quantity_of(catalog, name, number.unit), number.value, number.swing);
+    if (typeof number.change_percent === "number") row[`${key}_change`] = format_change(number.change_percent / 100);
+  }
+  if (resultant.time !== undefined) row["time"] = resultant.time;
+  return [row];
+}
+
+function storeys_table(summary: Summary, catalog: Catalog): Table[] {
+  const rows = (summary.verdict.storeys ?? []).flatMap(({ name: storey, numbers }) => [
+    ...storey_row(catalog, storey, numbers, "max_storey_shear", "shear"), ...storey_row(catalog, storey, numbers, "max_drift_ratio", "drift ratio"),
+  ]);
+  if (rows.length === 0) return [];
+  const changes = rows.some((row) => "length_change" in row);
+  const axis = (key: string, label: string): Column[] => [
+    column(key, label, "text"), ...(changes ? [column(`${key}_change`, "Change", "text")] : []),
+  ];
+  return [{
+    id: "storeys",
+    title: "Storeys",
+    caption: `Largest magnitudes along both axes and of the horizontal resultant, which need not occur together.${changes ? " Changes are those from the bonded model." : ""}`,
+    columns: [
+      column("storey", "Storey", "text"), column("quantity", "Quantity", "text"), ...axis("x", "Along x"), ...axis("y", "Along y"),
+      ...axis("length", "Resultant"), column("time", "at time", "number", "s", 4),
+    ],
+    rows,
+  }];
+}
+
 function sweep_table(summary: Summary): Table[] {
   const rows = summary.stiffness_sweep ?? [];
   if (rows.length === 0) return [];
@@ -219,5 +253,5 @@ function soil_tables(summary: Summary): Table[] {
 /** All of them; `others`: tables of the program on the motions, which follow that of the runs. */
 export function tables_of(summary: Summary, trust: Trust | undefined, catalog: Catalog, others: Table[]): Table[] {
   const runs = summary.runs.length > 0 ? [runs_table(summary)] : [];
-  return [...runs, ...others, ...floors_table(summary), ...(trust ? trust_tables(trust, catalog) : []), ...sweep_table(summary), ...soil_tables(summary)];
+  return [...runs, ...others, ...storeys_table(summary, catalog), ...floors_table(summary), ...(trust ? trust_tables(trust, catalog) : []), ...sweep_table(summary), ...soil_tables(summary)];
 }

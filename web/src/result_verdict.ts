@@ -40,11 +40,7 @@ const OF_BEAM: Captions = [
 ];
 const OF_STOREY: Captions = [
   ["max_storey_shear", "Storey shear"],
-  ["max_storey_shear_x", "Storey shear along x"],
-  ["max_storey_shear_y", "Storey shear along y"],
   ["max_drift_ratio", "Drift ratio"],
-  ["max_drift_ratio_x", "Drift ratio along x"],
-  ["max_drift_ratio_y", "Drift ratio along y"],
 ];
 const RESIDUAL: Captions = [
   ["residual_rotation", "Rotation"],

@@ -95,7 +95,7 @@ export const DOCUMENT = {
 function check_verdict(check, { interfaces: [base, wall], criteria: [criterion] }) {
   const row = (label) => [...base.beside, ...base.rest, ...wall.beside].find((each) => each.label === label) ?? {};
   const same = (label, key, text) => check.equal(row(label)[key], text, `${label}: ${key}`);
-  check.equal(base.beside.map((each) => each.label).join("; "), "Motion of the top; Base shear per metre; Base moment per metre; Least compression per metre; Utilisation of bearing capacity; Storey shear, level 3 m; Storey shear along x, level 3 m; Moment of column", "captions in their order");
+  check.equal(base.beside.map((each) => each.label).join("; "), "Motion of the top; Base shear per metre; Base moment per metre; Least compression per metre; Utilisation of bearing capacity; Storey shear, level 3 m; Moment of column", "captions in their order");
   same("Motion of the top", "text", "35.9 mm");
   same("Motion of the top", "changeText", "120 times as large");
   same("Motion of the top", "stepText", "±0.6 %");
@@ -122,7 +122,10 @@ function check_verdict(check, { interfaces: [base, wall], criteria: [criterion] 
 
 function check_tables(check, tables) {
   const table = (id) => tables.find((each) => each.id === id) ?? { rows: [], columns: [] };
-  check.equal(tables.map((each) => each.id).join(), "runs,floors,trust,trust_reaches,trust_runs,sweep,soil", "tables in their order");
+  check.equal(tables.map((each) => each.id).join(), "runs,storeys,floors,trust,trust_reaches,trust_runs,sweep,soil", "tables in their order");
+  const storey = table("storeys").rows[0] ?? {};
+  check.equal([storey.storey, storey.quantity, storey.x, storey.y, storey.length, storey.time].join("; "), "level 3 m; shear; 3.00 MN; 0 N; 3.00 MN; 2", "a storey along both axes and as resultant");
+  check.equal(table("storeys").columns.map((each) => each.label).join("; "), "Storey; Quantity; Along x; Along y; Resultant; at time", "no changes without a bonded run");
   const [first, bonded, failed] = table("runs").rows;
   check.equal([first.top, first.top_time, first.ratio, first.opening, first.moment, first.per_step].join(), "0.0359,0.75,0.25,0,1370000,4", "magnitudes of a run; a gap below the precision is 0");
   check.equal([bonded.ratio, bonded.opening, bonded.deviation].join(), ",,", "a bonded base has no gap, and is not compared");
