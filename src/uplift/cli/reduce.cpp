@@ -91,21 +91,22 @@ int reduce(const Options& options, const std::string& model, const ReduceOptions
   const fs::path results = default_result_path(loaded.read);
   ModelFile file(options.out.empty() ? (fs::path(loaded.read.file).parent_path() / results.filename()).string() + ".rom" : options.out,
                  options.quiet);
-  std::optional<ReducedModel> reduced;
   if (!wanted.model) {
     wanted.controls = 0;
-    reduced = reduce_case(loaded, wanted, control_of(options, nullptr));
-    if (!reduced) {
+    std::optional<ReducedModel> made = reduce_case(loaded, wanted, control_of(options, nullptr));
+    if (!made) {
       if (!options.quiet) complain(interrupt_text() + ": no reduced model was written");
       return interrupt_exit_code();
     }
-    file.write(*reduced);  // the control runs take long, and may be ended by anything
-    wanted.model = std::make_shared<const ReducedModel>(std::move(*reduced));
+    file.write(*made);  // the control runs take long, and may be ended by anything
+    wanted.model = std::make_shared<const ReducedModel>(std::move(*made));
   }
+  std::shared_ptr<const ReducedModel> reduced = wanted.model;
   if (asked.controls > 0) {
     wanted.controls = asked.controls;
-    reduced = reduce_case(loaded, wanted, control_of(options, nullptr));
-    file.write(*reduced);
+    std::optional<ReducedModel> stated = reduce_case(loaded, wanted, control_of(options, nullptr));
+    file.write(*stated);
+    reduced = std::make_shared<const ReducedModel>(std::move(*stated));
   }
   if (interrupt_asked() && !options.quiet)
     complain(fmt::format("{}: {} states {} control runs; uplift reduce {} --model {} --controls {} makes all of them", interrupt_text(),

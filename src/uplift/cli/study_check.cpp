@@ -28,13 +28,22 @@ std::string intensities(const StudyPlan& plan) {
                      fmt::join(method.levels, ", "), method.type == StudyMethod::Type::cloud ? "" : unit);
 }
 
+/// Share of the motion that the first run was computed for: trial runs that take long are ended.
+double computed_share(const BuiltCase& built, const StudyResult& trial) {
+  double planned = 0;
+  for (const Stage& stage : built.plan.stages)
+    if (stage.type == Stage::Type::dynamics) planned += stage.duration;
+  return trial.outcome == StudyOutcome::completed && trial.end_time < (1 - 1e-6) * planned ? trial.end_time / planned : 1;
+}
+
 /// What should be known before anything is computed.
 std::vector<std::string> warnings_of(const Study& study, const BuiltCase& built, const RunSpec& spec, const Case& read,
                                      const StudyResult& trial) {
   std::vector<std::string> said = warnings(read, spec, built);
   if (study.reduced) said.insert(said.begin(), study.reduced_statement());
+  const bool is_cut = computed_share(built, trial) < 1;  // it has not come to rest
   for (const StudyLimit& limit : study.of.plan.limits)
-    if (limit.quantity && !demand_of(limit, trial))
+    if (limit.quantity && !demand_of(limit, trial) && !(is_cut && limit.quantity->name.starts_with("residual")))
       said.push_back(fmt::format("the limit {}: the first run has no {}{}", in_quotes(limit.name), limit.quantity->name,
                                  limit.of.empty() ? "" : " of " + in_quotes(limit.of)));
   for (const CaseGround& ground : read.input->grounds)
@@ -60,7 +69,8 @@ std::vector<std::string> warnings_of(const Study& study, const BuiltCase& built,
 struct Forecast {
   StudyStatus status;
   Trials trials;
-  double line = 0;  // bytes of a run's results
+  double share = 1;  // of the first run, that was computed
+  double line = 0;   // bytes of a run's results
   std::size_t samples = 1;
   double left() const {
     const auto missing = static_cast<double>(status.expected - status.runs);
@@ -96,8 +106,9 @@ void print(const Study& study, const Forecast& forecast) {
        fmt::format("{}{}, of which {} are done", plan.method.searches() ? "about " : "", forecast.status.expected, forecast.status.runs));
   const std::string once =
       forecast.trials.before > 0 ? fmt::format(", {} before the first one of a sample", format_quantity(forecast.trials.before, "s")) : "";
-  line("time", fmt::format("{} a run{}; {} on one core for all that are missing", format_quantity(forecast.trials.seconds, "s"), once,
-                           format_quantity(forecast.left(), "s")));
+  const std::string from = forecast.share < 1 ? fmt::format(" (from its first {})", percent(forecast.share)) : "";
+  line("time", fmt::format("{} a run{}{}; {} on one core for all that are missing", format_quantity(forecast.trials.seconds, "s"), from,
+                           once, format_quantity(forecast.left(), "s")));
   line("memory", fmt::format("{} a worker{}", format_bytes(forecast.trials.memory),
                              forecast.trials.together > 1 ? fmt::format(", with {} runs in lockstep", forecast.trials.together) : ""));
   line("disk", format_bytes(forecast.disk()));
@@ -122,7 +133,8 @@ int check_study(const Options& options) {
   const Case read = case_of_sample(study.of, 0);
   const RunSpec spec = run_of_study(study.of, read, 0, 1);
   const BuiltCase built = build(read, spec);
-  const Forecast forecast{status, trials, static_cast<double>(line_of(trials.first).size()), study.of.samples.size()};
+  const Forecast forecast{status, trials, computed_share(built, trials.first), static_cast<double>(line_of(trials.first).size()),
+                          study.of.samples.size()};
   const std::vector<std::string> said = warnings_of(study, built, spec, read, trials.first);
   if (options.json) {
     print_text(json_of(forecast, said));

@@ -108,8 +108,8 @@ class TrialRuns {
     constexpr std::size_t few = 2, more = 4;
     double with_few = 0;
     if (found.together > more) compute(group(few)), with_few = largest_memory();
-    const std::size_t runs = std::min(found.together, more);
-    found.seconds = mean_time(compute(group(runs)));
+    const std::vector<StudyResult> runs = compute(group(std::min(found.together, more)));
+    if (std::ranges::all_of(runs, [](const StudyResult& run) { return says_something(run.outcome); })) found.seconds = mean_time(runs);
     found.memory = largest_memory();
     if (found.together > more) found.memory += static_cast<double>(found.together - more) * (found.memory - with_few) / (more - few);
   }
@@ -156,18 +156,22 @@ class TrialRuns {
     const bool side_by_side = most_together_ > 1;
     const Pace start(side_by_side ? batch.size() : 1);
     Pace pace = start;
-    double last = processor_time();
+    double last = processor_time(), told = 0;
     const auto tell = [&](StudyResult result) {
       const double now = processor_time();
       result.wall = now - std::exchange(last, now) + pace.take_rest();
       if (const std::optional<double>& most = study_.of.plan.timeout; most && result.wall > *most) {
         result.outcome = StudyOutcome::timeout;
         result.reason = fmt::format("it takes longer than {:g} s", *most);
+        result.wall = *most;
       }
-      if (!side_by_side) pace = start;
+      if (side_by_side)
+        ++told;
+      else
+        pace = start;
       done(result);
     };
-    computer_.compute(batch, tell, [&](double marched) { return watch(marched) && pace(marched); });
+    computer_.compute(batch, tell, [&](double marched) { return watch(marched) && pace(told + marched); });
   }
 
   const Study& study_;

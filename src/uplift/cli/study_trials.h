@@ -6,7 +6,7 @@ namespace uplift::cli {
 
 /// What trial runs of a study say of all others.
 struct Trials {
-  StudyResult first;         // of the first run: where it takes long, of its beginning
+  StudyResult first;         // of the first run; of its beginning where it takes long
   double seconds = 0;        // processor time of a run [s]
   double before = 0;         // processor time before the first run of a sample with a reduced model, for all its motions [s]
   double memory = 0;         // of a worker [bytes]

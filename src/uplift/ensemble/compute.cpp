@@ -207,7 +207,7 @@ StudyResult StudyComputer::compute(const RunRequest& request) {
 
 void StudyComputer::compute(std::span<const RunRequest> group, const std::function<void(const StudyResult&)>& done,
                             const WatchRuns& watch) {
-  watch_ = watch, ended_ = false;
+  watch_ = watch;
   std::set<std::string> told;
   const auto tell = [&](const StudyResult& result) {
     told.insert(result.id);
@@ -234,6 +234,7 @@ void StudyComputer::compute(std::span<const RunRequest> group, const std::functi
       not_computed(StudyOutcome::failed, error.what());
     }
   }
+  watch_ = {};
 }
 
 }  // namespace uplift

@@ -45,6 +45,7 @@ void PoolCoordinator::compute_all(const Plan& plan) {
     look_at(pool);
     if (Clock::now() - synced_ > between_syncs) tell();
   }
+  in_progress_ = 0, marched_ = 0;  // what was not ended is lost
 }
 
 void PoolCoordinator::look_at(const WorkerPool& pool) {

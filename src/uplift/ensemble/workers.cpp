@@ -87,15 +87,22 @@ std::string how_it_ended(int status) {
   return fmt::format("exit code {}", WEXITSTATUS(status));
 }
 
+/// Zeros that processes forked from this one share with it.
+std::shared_ptr<std::atomic<double>[]> shared_numbers(std::size_t count) {
+  static_assert(std::atomic<double>::is_always_lock_free);
+  const std::size_t bytes = count * sizeof(std::atomic<double>);
+  void* shared = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (shared == MAP_FAILED) throw OutputError(fmt::format("cannot share memory with the workers: {}", std::strerror(errno)));
+  auto* numbers = static_cast<std::atomic<double>*>(shared);
+  std::uninitialized_fill_n(numbers, count, 0.0);
+  return {numbers, [bytes](std::atomic<double>* all) { ::munmap(all, bytes); }};
+}
+
 }  // namespace
 
-WorkerPool::WorkerPool(int count, const WorkerLimits& limits, Compute compute) : limits_(limits), compute_(std::move(compute)) {
-  static_assert(std::atomic<double>::is_always_lock_free);
+WorkerPool::WorkerPool(int count, const WorkerLimits& limits, Compute compute)
+    : limits_(limits), compute_(std::move(compute)), marched_(shared_numbers(static_cast<std::size_t>(count))) {
   workers_.resize(static_cast<std::size_t>(count));
-  void* shared = ::mmap(nullptr, workers_.size() * sizeof *marched_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  if (shared == MAP_FAILED) throw OutputError(fmt::format("cannot share memory with the workers: {}", std::strerror(errno)));
-  marched_ = static_cast<std::atomic<double>*>(shared);
-  std::uninitialized_fill_n(marched_, workers_.size(), 0.0);
   for (Worker& worker : workers_) start(worker);
 }
 
@@ -105,7 +112,6 @@ WorkerPool::~WorkerPool() {
     ::waitpid(worker.process, nullptr, 0);
     ::close(worker.channel);
   }
-  ::munmap(marched_, workers_.size() * sizeof *marched_);
 }
 
 std::atomic<double>& WorkerPool::marched_of(const Worker& worker) const {

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -71,7 +72,7 @@ class WorkerPool {
   const WorkerLimits limits_;
   const Compute compute_;
   std::vector<Worker> workers_;
-  std::atomic<double>* marched_;  // of every worker, in memory that all processes share
+  std::shared_ptr<std::atomic<double>[]> marched_;  // of every worker, in memory that all processes share
 };
 
 }  // namespace uplift

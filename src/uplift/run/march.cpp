@@ -19,6 +19,11 @@ double sum_round_off(const Sparse& stiffness, const Vector& displacement) {
   return std::numeric_limits<double>::epsilon() * sum;
 }
 
+/// Of a dynamic stage; others have none.
+long steps_of(const Stage& stage) {
+  return stage.type == Stage::Type::dynamics ? std::max(1L, std::lround(stage.duration / stage.step)) : 0;
+}
+
 }  // namespace
 
 void Runner::note_views() {
@@ -215,7 +220,12 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   start(stage, counts, stepper);
   seen_ = &stepper.state();
   run_.result.step_means = run_.result.step_means || stepper.averages_acceleration();
-  const long steps = std::max(1L, std::lround(stage.duration / stage.step)), begin = run_.step;
+  const long steps = steps_of(stage), begin = run_.step;
+  long steps_before = 0, all_steps = 0;  // of all dynamic stages
+  for (std::size_t k = 0; k < plan_.stages.size(); ++k) {
+    if (k == run_.stage) steps_before = all_steps;
+    all_steps += steps_of(plan_.stages[k]);
+  }
   const ForceStage force_stage = this->force_stage(stage);
   Recorder recorder(model_, plan_, *seen_, stepper.energies(), &stepper, views_, force_stage, steps, stage.step, run_.result);
   EquilibriumCheck equilibrium(force_stage);
@@ -262,7 +272,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
     if (watch_ && step % between == 0 && go_on) {
       const double open = views_.empty() ? 0 : views_.front().open_area;
       const double scale = run_.result.energy_scale > 0 ? run_.result.energy_scale : 1;
-      if (!watch_({static_cast<double>(step) / static_cast<double>(steps), seen_->time, stage.step, open,
+      if (!watch_({static_cast<double>(steps_before + step) / static_cast<double>(all_steps), seen_->time, stage.step, open,
                    stepper.energies().residual / scale})) {
         run_.result.status = RunStatus::interrupted;
         run_.result.reason = fmt::format("interrupted at t = {:.6g} s", seen_->time);

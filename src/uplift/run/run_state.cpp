@@ -233,7 +233,7 @@ void list_parts(Archive& archive, T& run) {
 
 namespace {
 
-constexpr std::string_view magic = "uplift run state 6\n";
+constexpr std::string_view magic = "uplift run state 7\n";
 
 }  // namespace
 

@@ -33,9 +33,9 @@ bool is_safety(const VerdictQuantity& quantity) {
 }
 
 /// Durations and instants depend on gaps that vanish, and the compression of the joint on its stiffness, which is a choice of the
-/// computation: their changes are stated but decide nothing.
+/// computation; one axis of a storey may hold little of its vector. Their changes are stated but decide nothing.
 bool decides(const VerdictQuantity& quantity) {
-  return quantity.unit != "s" && quantity.name != "max_penetration";
+  return quantity.unit != "s" && quantity.name != "max_penetration" && !quantity.name.ends_with("_x") && !quantity.name.ends_with("_y");
 }
 
 bool is_force(const VerdictQuantity& quantity) {
