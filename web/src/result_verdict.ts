@@ -9,6 +9,8 @@ const OF_RUN: Captions = [
   ["max_top_motion", "Motion of the top"],
   ["max_drift", "Drift of the top"],
   ["max_drift_without_rotation", "Drift without base rotation"],
+  ["max_storey_shear", "Largest storey shear"],
+  ["max_drift_ratio", "Largest drift ratio"],
   ["max_total_shear", "Horizontal force, base and walls"],
   ["max_total_moment", "Moment, base and walls"],
 ];
@@ -37,10 +39,6 @@ const OF_BEAM: Captions = [
   ["max_beam_shear", "Shear of"],
   ["max_beam_compression", "Compression of"],
   ["max_beam_tension", "Tension of"],
-];
-const OF_STOREY: Captions = [
-  ["max_storey_shear", "Storey shear"],
-  ["max_drift_ratio", "Drift ratio"],
 ];
 const RESIDUAL: Captions = [
   ["residual_rotation", "Rotation"],
@@ -91,14 +89,12 @@ function rows_of(catalog: Catalog, captions: Captions, numbers: ResultNumbers, s
   });
 }
 
-/** Of beams or storeys: what is not zero. */
-function named_rows(
-  catalog: Catalog, captions: Captions, list: { name: string; numbers: ResultNumbers }[], caption: (label: string, name: string) => string,
-): VerdictRow[] {
-  return list.flatMap(({ name: of, numbers }) =>
-    captions.flatMap(([name, label]) => {
+/** Beams in which there is a force at all. */
+function beam_rows(catalog: Catalog, beams: { name: string; numbers: ResultNumbers }[]): VerdictRow[] {
+  return beams.flatMap(({ name: beam, numbers }) =>
+    OF_BEAM.flatMap(([name, label]) => {
       const number = numbers[name];
-      return number && (number.value !== 0 || (number.bonded ?? 0) !== 0) ? [row_of(catalog, name, caption(label, of), number)] : [];
+      return number && (number.value !== 0 || (number.bonded ?? 0) !== 0) ? [row_of(catalog, name, `${label} ${beam}`, number)] : [];
     }));
 }
 
@@ -129,7 +125,7 @@ function base_of(catalog: Catalog, summary: Summary, extras: VerdictExtras, k: n
   const base: BaseVerdict = { name, role, time: [], share: [], above: [], lost: [], lostText: "", beside: [], rest: [] };
   if (statics) return base; // the facts contain everything
   if (role === "wall") return { ...base, beside: rows_of(catalog, OF_WALL, numbers) };
-  const { per_metre: strip, numbers: whole, beams = [], storeys = [] } = summary.verdict;
+  const { per_metre: strip, numbers: whole, beams = [] } = summary.verdict;
   const linear = linear_of(catalog, numbers);
   return {
     ...base,
@@ -142,8 +138,7 @@ function base_of(catalog: Catalog, summary: Summary, extras: VerdictExtras, k: n
     beside: [
       ...(k === 0 ? rows_of(catalog, OF_RUN, whole, strip) : []),
       ...rows_of(catalog, OF_BASE, numbers, strip),
-      ...(k === 0 ? named_rows(catalog, OF_STOREY, storeys, (label, storey) => `${label}, ${storey}`) : []),
-      ...(k === 0 ? named_rows(catalog, OF_BEAM, beams, (label, beam) => `${label} ${beam}`) : []),
+      ...(k === 0 ? beam_rows(catalog, beams) : []),
     ],
     rest: rows_of(catalog, RESIDUAL, numbers),
     ...(linear ? { linear } : {}),

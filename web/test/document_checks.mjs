@@ -42,7 +42,7 @@ const SUMMARY = {
   floor_envelopes: [{ damping_case: "", runs: 2, floors: [floor(ARISING)] }],
   verdict: {
     level: "uplift", headline: "h", consequence: "", step_check: { result: "converged", sentence: "s" }, per_metre: true, floors: [],
-    numbers: { max_top_motion: { value: 0.0359, unit: "m", time: 0.75, bonded: 0.0003, change_percent: 11866.67, at_twice_the_step: 0.0361 } },
+    numbers: { max_top_motion: { value: 0.0359, unit: "m", time: 0.75, bonded: 0.0003, change_percent: 11866.67, at_twice_the_step: 0.0361 }, max_storey_shear: { value: 3e6, unit: "N", time: 2 } },
     interfaces: [
       {
         name: "soil", role: "base",
@@ -95,7 +95,7 @@ export const DOCUMENT = {
 function check_verdict(check, { interfaces: [base, wall], criteria: [criterion] }) {
   const row = (label) => [...base.beside, ...base.rest, ...wall.beside].find((each) => each.label === label) ?? {};
   const same = (label, key, text) => check.equal(row(label)[key], text, `${label}: ${key}`);
-  check.equal(base.beside.map((each) => each.label).join("; "), "Motion of the top; Base shear per metre; Base moment per metre; Least compression per metre; Utilisation of bearing capacity; Storey shear, level 3 m; Moment of column", "captions in their order");
+  check.equal(base.beside.map((each) => each.label).join("; "), "Motion of the top; Largest storey shear per metre; Base shear per metre; Base moment per metre; Least compression per metre; Utilisation of bearing capacity; Moment of column", "captions in their order");
   same("Motion of the top", "text", "35.9 mm");
   same("Motion of the top", "changeText", "120 times as large");
   same("Motion of the top", "stepText", "±0.6 %");

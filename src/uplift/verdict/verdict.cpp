@@ -229,7 +229,7 @@ bool is_negligible(const VerdictNumber& number) {
   return std::abs(number.value) <= std::max(number.least, nothing_beside(number.quantity->unit));
 }
 
-void say_top(Verdict& verdict) {
+void say_structure(Verdict& verdict) {
   const auto fact = [&](const char* name, const char* label, const std::string& detail, bool tile) {
     const VerdictNumber* number = find_number(verdict.numbers.whole, name);
     if (!number || is_negligible(*number)) return;
@@ -239,20 +239,8 @@ void say_top(Verdict& verdict) {
   fact("max_top_motion", "Top motion", "", true);
   fact("max_drift", "Drift of the top", "relative to the base, ", false);
   fact("max_drift_without_rotation", "Drift without base rotation", "deformation of the structure, ", false);
-}
-
-/// In space: the vector of every storey, and what it reaches along the axes.
-void say_storeys(Verdict& verdict) {
-  for (const StoreyVerdict& storey : verdict.numbers.storeys)
-    for (const auto& [name, label] : {std::pair{std::string("max_storey_shear"), "Storey shear, "}, {"max_drift_ratio", "Drift ratio, "}}) {
-      const VerdictNumber *number = find_number(storey.numbers, name), *x = find_number(storey.numbers, name + "_x"),
-                          *y = find_number(storey.numbers, name + "_y");
-      if (!number || !x || !y || is_negligible(*number)) continue;
-      verdict.facts.push_back({label + storey.name, text_of(*number),
-                               fmt::format("{}along x {}, along y {}, {}", number->change ? compared(*number) + ", " : "", text_of(*x),
-                                           text_of(*y), at(*number)),
-                               false, format_step_change(*number)});
-    }
+  fact("max_storey_shear", "Storey shear", "largest of those recorded, ", false);
+  fact("max_drift_ratio", "Drift ratio", "largest of those recorded, ", false);
 }
 
 void say_compared(const BuiltCase& built, const RunResult& bonded, Verdict& verdict) {
@@ -389,8 +377,7 @@ Verdict judge(const BuiltCase& built, const RunResult& run, const RunResult* bon
   say_uplift(built, run, verdict);
   say_forces(built, run, verdict);
   say_radiation(built, verdict);
-  say_top(verdict);
-  say_storeys(verdict);
+  say_structure(verdict);
   if (bonded) say_compared(built, *bonded, verdict);
   say_consequence(floors, verdict);
   say_walls(verdict);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -85,11 +86,18 @@ TEST(StoreysInSpace, InPhaseTheLengthIsLonger) {
   const Ran ran = run_text(stick(amplitude, amplitude, 0, 0, shears("xy") + drifts()));
   expect_numbers(ran, 1, std::numbers::sqrt2);
   const Verdict verdict = judge(ran.built, ran.result, nullptr);
-  int said = 0;
-  for (const Verdict::Fact& fact : verdict.facts)
-    said +=
-        fact.label == "Storey shear, level 1 m" || fact.label == "Storey shear, level 4 m" || fact.label == "Drift ratio, top over foot";
-  EXPECT_EQ(said, 3);
+  const auto told = [&](const char* label) {
+    const auto found = std::ranges::find(verdict.facts, label, &Verdict::Fact::label);
+    return found == verdict.facts.end() ? "" : found->value;
+  };
+  EXPECT_EQ(told("Storey shear"), "23.6 kN");  // sqrt(2) 12 E I/h^3 a = 23.57 kN
+  EXPECT_EQ(told("Drift ratio"), "0.00236");   // sqrt(2) a/h = 0.002357
+}
+
+TEST(StoreysInSpace, RecordedTwiceIsListedOnce) {
+  const std::string again = "[[output.history]]\nname = \"again\"\nlevel = 1\nquantity = \"storey_shear_x\"\n";
+  const Ran ran = run_text(stick(amplitude, amplitude, 0, 0, shears("xy") + again));
+  EXPECT_EQ(numbers_of(ran.built, ran.result, nullptr).storeys.size(), 2U);
 }
 
 TEST(StoreysInSpace, OneAxisAloneIsNoVector) {

@@ -72,9 +72,10 @@ void add_storeys(BuiltCase& built) {
              (is_drift ? other.unit == "1" && other.below == x.below + 1 && other.unknown == x.unknown + 1 : other.level == x.level);
     });
     if (y == requests.end()) continue;
-    const std::string name = is_drift ? fmt::format("{} over {}", node(x.unknown), node(x.below)) : fmt::format("level {:.6g} m", *x.level);
+    std::string name = is_drift ? fmt::format("{} over {}", node(x.unknown), node(x.below)) : fmt::format("level {:.6g} m", *x.level);
+    if (std::ranges::find(built.plan.combined, name, &CombinedRequest::name) != built.plan.combined.end()) continue;  // recorded twice
     const auto alone = [](const Request& of) { return Terms{{.kind = of.kind, .column = of.name}}; };
-    built.plan.combined.push_back({name, x.unit, {alone(x), alone(*y)}});
+    built.plan.combined.push_back({std::move(name), x.unit, {alone(x), alone(*y)}});
   }
 }
 
