@@ -31,6 +31,11 @@ struct Beginning {
   }
 };
 
+/// Seldom: where another solver takes the step.
+[[gnu::noinline]] void copy(const JointFilterInput& from, JointFilterInput& to) {
+  to = from;
+}
+
 }  // namespace
 
 JointFilter::JointFilter(const Model& model, const Behaviours& behaviours, const Scheme& scheme)
@@ -111,8 +116,7 @@ void JointFilter::shorten(double shrink) {
 }
 
 void JointFilter::begin(JointFilterInput& input) {
-  if (ready_ == &input) return;
-  input = *ready_;
+  if (ready_ != &input) copy(*ready_, input);
   ready_ = &input;
 }
 
@@ -128,7 +132,7 @@ void JointFilter::begin_footing(Footing& footing, JointFilterInput& input) {
   footing.components == 3 ? begin_rows<3>(footing, input) : begin_rows<6>(footing, input);
 }
 
-double JointFilter::end_footing(Footing& footing, const InterfaceSolution& solution, double to_mean, const State& now, const State& next,
+[[gnu::noinline]] double JointFilter::end_footing(Footing& footing, const InterfaceSolution& solution, double to_mean, const State& now, const State& next,
                                 JointFilterInput& input) const {
   return footing.components == 3 ? end_rows<3>(footing, solution, to_mean, now, next, input)
                                  : end_rows<6>(footing, solution, to_mean, now, next, input);

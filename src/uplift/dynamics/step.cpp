@@ -24,6 +24,14 @@ constexpr double smallest_share = 0.3;
 /// Of the forces at the beginning of a step: each at least halves what a point keeps, or leaves nothing of it.
 constexpr int most_reductions = 60;
 
+/// Exchanges without copies what every march changes in a step; the rest is the same in both where it is not exchanged too.
+void exchange(State& now, State& next) {
+  std::swap(now.time, next.time);
+  now.displacement.swap(next.displacement), now.velocity.swap(next.velocity);
+  now.opening.swap(next.opening), now.force.swap(next.force), now.mean_force.swap(next.mean_force);
+  now.history.swap(next.history);
+}
+
 }  // namespace
 
 Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Vector& gap, const Behaviours& behaviours,
@@ -354,16 +362,20 @@ bool Stepper::substep(int halving) {
   begin_kick(now);
   if (try_step(now)) {
     book_energies(now);
-    now_.swap(next_);
+    exchange(now_, next_);
     force_now_.swap(force_next_);
-    std::swap(kick_, kick_next_);
+    if (!path_) now_.acceleration.swap(next_.acceleration);
+    if (impacts_) std::swap(kick_, kick_next_);
     if (filtered_) {
+      std::swap(now_.filter.step, next_.filter.step);
+      now_.filter.displacement.swap(next_.filter.displacement), now_.filter.velocity.swap(next_.filter.velocity);
       stiff_now_.swap(stiff_next_);
       momentum_now_.swap(momentum_next_);
-      filtered_stiff_.swap(work_);
-      filtered_momentum_.swap(work2_);
     }
-    if (newton_ != nullptr) std::swap(plastic_now_, plastic_next_);
+    if (newton_ != nullptr) {
+      now_.bulk_history.swap(next_.bulk_history);
+      std::swap(plastic_now_, plastic_next_);
+    }
     counts_.deepest = std::max(counts_.deepest, halving);
     last_step_ = now.step;
     friction_.reduced = friction_.slips = false;

@@ -45,7 +45,7 @@ void Stepper::shorten_filters(double step) {
 
 /// Moves the filters over the step that was just solved and books what they store and dissipate: with d before the step,
 ///     dissipation b (1 + a)/2 (|du - d_u|^2_K + |dv - d_v|^2_M),      storage b/(2 (1 - a)) (|d_u|^2_K + |d_v|^2_M)
-/// work_ and work2_ receive K d_u and M d_v after it. The geometric stiffness is not filtered.
+/// The geometric stiffness is not filtered.
 void Stepper::advance_filters(const Level& level) {
   const Eigen::Index n = bulk_.unknowns;
   const double a = options_.scheme.pole, keep = 1 - a;
@@ -57,8 +57,8 @@ void Stepper::advance_filters(const Level& level) {
   const double *du = increment_.data(), *v0 = now_.velocity.data(), *v1 = next_.velocity.data();
   const double *k0 = stiff_before->data(), *k1 = stiff_next_.data(), *m0 = momentum_now_.data(), *m1 = momentum_next_.data();
   const double *d_u = now_.filter.displacement.data(), *d_v = now_.filter.velocity.data();
-  const double *k_d = filtered_stiff_.data(), *m_d = filtered_momentum_.data();
-  double *d_u1 = next_.filter.displacement.data(), *d_v1 = next_.filter.velocity.data(), *k_d1 = work_.data(), *m_d1 = work2_.data();
+  double *d_u1 = next_.filter.displacement.data(), *d_v1 = next_.filter.velocity.data();
+  double *k_d = filtered_stiff_.data(), *m_d = filtered_momentum_.data();  // K d_u, M d_v
   double lost = 0, stored = 0;
   small::with_size(n, [=, &lost, &stored](auto count) {
     double loss = 0, after = 0;
@@ -68,7 +68,7 @@ void Stepper::advance_filters(const Level& level) {
       const double u = a * d_u[i] + keep * du[i], v = a * d_v[i] + keep * dv, ku = a * k_d[i] + keep * dk, mv = a * m_d[i] + keep * dm;
       loss += (du[i] - d_u[i]) * (dk - k_d[i]) + (dv - d_v[i]) * (dm - m_d[i]);
       after += u * ku + v * mv;
-      d_u1[i] = u, d_v1[i] = v, k_d1[i] = ku, m_d1[i] = mv;
+      d_u1[i] = u, d_v1[i] = v, k_d[i] = ku, m_d[i] = mv;
     }
     lost = loss, stored = after;
   });

@@ -240,11 +240,12 @@ double PositiveShare::along_lines(double level, const double* value) const {
   if (count >= lanes) {
     Lanes sum = zero;
     const auto add = [&](Index first, const double* lengths) __attribute__((always_inline)) {
-      const Lanes a = WholeLanes{first}(value)-height, b = WholeLanes{first + 1}(value)-height, length = WholeLanes{0}(lengths);
-      if (any((a > zero) != (b > zero)))
-        sum += positive_length(length, a, b);
+      const Lanes a = WholeLanes{first}(value), b = WholeLanes{first + 1}(value), length = WholeLanes{0}(lengths);
+      const LaneMask above = a > height;
+      if (any(above != (b > height)))
+        sum += positive_length(length, Lanes(a - height), Lanes(b - height));
       else
-        sum += choose(a > zero, length, zero);
+        sum += choose(above, length, zero);
     };
     const Index whole = count / lanes * lanes;
     for (Index i = 0; i < whole; i += lanes) add(i, length_.data() + i);

@@ -104,6 +104,7 @@ InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance, const
     if (interface.batch.rotations > 0) layout.footing = interface.law.get();
     layout.points = interface.batch.points;
     layout.translations = interface.batch.translations();
+    layout.normal = first + (layout.translations - 1) * layout.points;
     layout.space = interface.space;
     layout.area = interface.area;
     layout.inverse_area = interface.area.cwiseInverse();
@@ -121,15 +122,15 @@ InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance, const
     layout.stiffness = normal_stiffness(interface);
     layout.bonded = interface.law != nullptr && !interface.law->scales().opens;
     layout.rule = gap_rule(interface);
-    if (!layout.rule.opens || layout.rule.softness > 0) gap_.setZero(std::max<Index>(gap_.size(), layout.points));
+    layout.gaps_differ = !layout.rule.opens || layout.rule.softness > 0;
+    if (layout.gaps_differ) gap_.setZero(std::max<Index>(gap_.size(), layout.points));
     if (const std::size_t k = layouts_.size(); k < facets.size() && facets[k] != nullptr) {
       layout.share = PositiveShare(*facets[k]);
       layout.corners = facets[k]->corners;
       layout.at_edge = facets[k]->at_edge;
-      const int row = first + (layout.translations - 1) * layout.points;
       const bool bare = layout.rule.opens && !(interface.law != nullptr && interface.law->scales().strength > 0) &&
                         std::isfinite(layout.stiffness);  // it gives, and never pulls
-      if ((bare || layout.bonded) && opens_as_a_plane(model, interface, layout.slope_weight, row)) {
+      if ((bare || layout.bonded) && opens_as_a_plane(model, interface, layout.slope_weight, layout.normal)) {
         layout.plane = bare;
         layout.plane_tractions = layout.bonded && interface.weight.size() == interface.area.size() && interface.weight == interface.area;
       }
@@ -168,6 +169,13 @@ double InterfaceViewer::open_share(const Layout& layout, const double* gap, cons
       at.put(value, choose(here > zero, here, smaller(here, compliance * at(force) * at(inverse))));
     });
   return layout.share.positive(value);
+}
+
+/// The share of the surface on which a quantity is above a level, linear between the points.
+[[gnu::noinline]] double InterfaceViewer::share_above(const Layout& layout, double level, const double* value) {
+  if (layout.share.points_alone()) return layout.share.above(level, value);
+  for_lanes(layout.points, [&, left = value_.data()](const auto& at) { at.put(left, at(value) - level); });
+  return layout.share.positive(value_.data());
 }
 
 /// The share of the area that pulls, tractions cut where they pass zero.
@@ -223,17 +231,11 @@ void InterfaceViewer::look_at_plane(const Layout& layout, const double* gap, Int
   }
   if (!(most > tolerance_)) return;
   view.max_opening = most;
-  if (layout.share.empty() || least > tolerance_) return;
-  if (layout.share.points_alone()) {
-    view.open_area = layout.share.above(tolerance_, gap);
-    return;
-  }
-  for_lanes(layout.points, [&, value = value_.data(), tolerance = tolerance_](const auto& at) { at.put(value, at(gap) - tolerance); });
-  view.open_area = layout.share.positive(value_.data());
+  if (!layout.share.empty() && !(least > tolerance_)) view.open_area = share_above(layout, tolerance_, gap);
 }
 
 /// One point with rotations: its law knows how much of the footing is open. A pressure is not among its forces.
-void InterfaceViewer::look_at_footing(const Layout& layout, const Vector& opening, const Vector& force, const Vector& history,
+[[gnu::noinline]] void InterfaceViewer::look_at_footing(const Layout& layout, const Vector& opening, const Vector& force, const Vector& history,
                                       const Vector* radiation, InterfaceView& view) const {
   const double* rows = opening.data() + layout.first;
   const FootingContact contact = layout.footing->contact(layout.batch, rows, history.data() + layout.first_history);
@@ -266,76 +268,85 @@ Resultant InterfaceViewer::resultant_by_rows(const Layout& layout, const Vector&
 }
 
 /// Of every point, at the end of the step [m]; negative where it is closed. What round-off leaves of a stretched joint is no gap.
-const double* InterfaceViewer::gaps(const Layout& layout, const State& state) {
-  const int normal = layout.first + (layout.translations - 1) * layout.points;
-  const double *opening = state.opening.data() + normal, *force = state.force.data() + normal, *inverse = layout.inverse_area.data();
-  const auto [opens, softness] = layout.rule;
-  if (opens && !(softness > 0)) return opening;
-  for_lanes(layout.points, [&, gap = gap_.data(), opens = opens, softness = softness](const auto& at) {
+const double* InterfaceViewer::gaps(const Layout& layout, const double* opening, const double* force) {
+  const double* inverse = layout.inverse_area.data();
+  for_lanes(layout.points, [&, gap = gap_.data(), opens = layout.rule.opens, softness = layout.rule.softness](const auto& at) {
     const Lanes zero = 0, stretch = softness * larger(at(force) * at(inverse), zero), left = at(opening) - stretch;
     at.put(gap, opens ? choose(stretch > zero && left < 1e-9 * stretch, zero, left) : smaller(at(opening), zero));
   });
   return gap_.data();
 }
 
-void InterfaceViewer::look(const State& state, std::vector<InterfaceView>& views, const Vector* radiation) {
-  const Vector &opening = state.opening, &force = state.mean_force;
-  views.resize(layouts_.size());
-  for (std::size_t k = 0; k < layouts_.size(); ++k) {
-    const Layout& layout = layouts_[k];
-    if (layout.footing != nullptr) {
-      look_at_footing(layout, opening, force, state.history, radiation, views[k]);
-      continue;
-    }
-    const int n = layout.points, normal = layout.first + (layout.translations - 1) * n;
-    const double *gap = gaps(layout, state), *stretch = opening.data() + normal, *p = force.data() + normal;
-    const double *area = layout.area.data(), *inverse = layout.inverse_area.data(), *along = layout.along.data();
-    const double *slope = layout.slope_weight[0].data(), tolerance = tolerance_;
-    const Lanes zero = 0;
-    Lanes axials = zero, moments = zero, slopes = zero, open = zero, pulled = zero, widest = zero, pressure = zero, least = gap[0];
-    for_lanes(n, [&](const auto& at) {
-      const Lanes pull = at(p), here = at(gap), weight = at(area);
-      axials += pull;
-      moments += at(along) * pull;
-      slopes += at(slope) * at(stretch);
-      open += choose(here > tolerance, weight, zero);
-      pulled += choose(pull > zero, weight, zero);
-      widest = larger(widest, here);
-      least = smaller(least, at(gap, gap[0]));
-      pressure = larger(pressure, -pull * at(inverse));
-    });
-    double shear = 0, moment = sum(moments);
-    InterfaceView& view = views[k];
-    view.open_area = std::min(1.0, sum(open) / layout.total);
-    view.tension_area = std::min(1.0, sum(pulled) / layout.total);
-    view.max_opening = largest(widest);
-    view.least_opening = smallest(least);
-    view.max_pressure = largest(pressure);
-    const auto in_parts = [&](double share) { return !layout.share.empty() && share > 0 && share < whole; };
-    const bool plane = layout.plane && !(layout.rule.softness > 0 && state.force.segment(normal, n).maxCoeff() > 0);
-    if (plane)
-      look_at_plane(layout, gap, view);
-    else if (in_parts(view.open_area))
-      view.open_area = open_share(layout, gap, p, view);
-    if (layout.bonded && (in_parts(view.tension_area) || (layout.plane_tractions && view.tension_area == 0 && pulls_at_edge(layout, p))))
-      view.tension_area = tension_share(layout, p);
-    if (!layout.corners.empty()) {
-      if (layout.at_edge) view.max_pressure = std::max(view.max_pressure, edge_pressure(layout, p));
-      if (!plane && view.max_opening > tolerance) view.max_opening = std::max(view.max_opening, edge_opening(layout, gap));
-    }
-    view.rotation = {sum(slopes), 0};
-    if (layout.slope_weight[1].size() > 0) view.rotation[1] = small::dot(n, layout.slope_weight[1].data(), stretch);
-    if (layout.resultant_rows.size() > 0) {
-      view.resultant = resultant_by_rows(layout, force);
-      continue;
-    }
-    if (layout.translations > 1) {
-      const double* t = force.data() + layout.first;
-      const double* across = layout.across.data();
+/// The share of the area of the points that pull.
+double InterfaceViewer::pulling_points(const Layout& layout, const double* force) {
+  const Lanes zero = 0;
+  Lanes pulled = zero;
+  for_lanes(layout.points, [&, area = layout.area.data()](const auto& at) { pulled += choose(at(force) > zero, at(area), zero); });
+  return std::min(1.0, sum(pulled) / layout.total);
+}
+
+/// Points without rotations.
+void InterfaceViewer::look_at_points(const Layout& layout, const State& state, InterfaceView& view) {
+  const int n = layout.points;
+  const double *opening = state.opening.data() + layout.normal, *p = state.mean_force.data() + layout.normal;
+  const double* gap = layout.gaps_differ ? gaps(layout, opening, state.force.data() + layout.normal) : opening;
+  const double *area = layout.area.data(), *inverse = layout.inverse_area.data(), *along = layout.along.data(), *slope = layout.slope_weight[0].data();
+  const double tolerance = tolerance_;
+  const Lanes zero = 0;
+  Lanes axials = zero, moments = zero, slopes = zero, open = zero, widest = zero, traction = zero, pull = zero, least = gap[0];
+  for_lanes(n, [&](const auto& at) {
+    const Lanes force = at(p);
+    axials += force;
+    moments += at(along) * force;
+    slopes += at(slope) * at(opening);
+    open += choose(at(gap) > tolerance, at(area), zero);
+    widest = larger(widest, at(gap));
+    least = smaller(least, at(gap, gap[0]));
+    traction = smaller(traction, force * at(inverse));
+    pull = larger(pull, force);
+  });
+  const bool pulls = any(pull > zero);
+  const double axial = sum(axials);
+  double moment = sum(moments), shear = 0;
+  view.rotation = {sum(slopes), 0};
+  view.max_opening = largest(widest);
+  view.least_opening = smallest(least);
+  view.max_pressure = 0 - smallest(traction);  // not -0
+  view.open_area = std::min(1.0, sum(open) / layout.total);
+  view.tension_area = pulls ? pulling_points(layout, p) : 0;
+  const auto in_parts = [&](double share) { return !layout.share.empty() && share > 0 && share < whole; };
+  const bool plane = layout.plane && !(layout.rule.softness > 0 && state.force.segment(layout.normal, n).maxCoeff() > 0);
+  if (plane)
+    look_at_plane(layout, gap, view);
+  else if (in_parts(view.open_area))
+    view.open_area = open_share(layout, gap, p, view);
+  if (layout.bonded && (in_parts(view.tension_area) || (layout.plane_tractions && view.tension_area == 0 && pulls_at_edge(layout, p))))
+    view.tension_area = tension_share(layout, p);
+  if (!layout.corners.empty()) {
+    if (layout.at_edge) view.max_pressure = std::max(view.max_pressure, edge_pressure(layout, p));
+    if (!plane && view.max_opening > tolerance) view.max_opening = std::max(view.max_opening, edge_opening(layout, gap));
+  }
+  if (layout.slope_weight[1].size() > 0) view.rotation[1] = small::dot(n, layout.slope_weight[1].data(), opening);
+  if (layout.resultant_rows.size() > 0) {
+    view.resultant = resultant_by_rows(layout, state.mean_force);
+    return;
+  }
+  if (layout.translations > 1) {
+    const double *t = state.mean_force.data() + layout.first, *across = layout.across.data();
 #pragma omp simd reduction(+ : shear, moment)
-      for (int i = 0; i < n; ++i) shear += t[i], moment -= across[i] * t[i];
-    }
-    view.resultant = {.axial = sum(axials), .shear = shear, .moment = moment};
+    for (int i = 0; i < n; ++i) shear += t[i], moment -= across[i] * t[i];
+  }
+  view.resultant = {.axial = axial, .shear = shear, .moment = moment};
+}
+
+void InterfaceViewer::look(const State& state, std::vector<InterfaceView>& views, const Vector* radiation) {
+  if (views.size() != layouts_.size()) views.resize(layouts_.size());
+  InterfaceView* view = views.data();
+  for (const Layout& layout : layouts_) {
+    if (layout.footing != nullptr)
+      look_at_footing(layout, state.opening, state.mean_force, state.history, radiation, *view++);
+    else
+      look_at_points(layout, state, *view++);
   }
 }
 

@@ -37,7 +37,7 @@ class InterfaceViewer {
 
  private:
   struct Layout {
-    int first = 0, points = 0, translations = 0;
+    int first = 0, points = 0, translations = 0, normal = 0;  // normal: its first row
     Vector area, inverse_area, along, across;  // along t and along n from the reference point [m]
     std::array<Vector, 2> slope_weight;
     Space space;
@@ -47,6 +47,7 @@ class InterfaceViewer {
     double stiffness = 0;   // Pa/m of the closed joint; infinite for constraints
     bool bonded = false;    // it may pull: the tension share is asked for
     GapRule rule;
+    bool gaps_differ = false;  // from the openings
     std::vector<Facets::Corner> corners;    // of the surface that are no points: openings are extrapolated to them
     bool at_edge = false;                   // pressures too
     bool plane = false;                     // openings are those of a plane, closed ones too: they are extrapolated wherever they are
@@ -57,6 +58,7 @@ class InterfaceViewer {
   };
   void look_at_footing(const Layout& layout, const Vector& opening, const Vector& force, const Vector& history, const Vector* radiation,
                        InterfaceView& view) const;
+  void look_at_points(const Layout& layout, const State& state, InterfaceView& view);
   /// `more`: forces that are added; null: none.
   static Resultant resultant_by_rows(const Layout& layout, const Vector& force, const Vector* more = nullptr);
   double open_share(const Layout& layout, const double* gap, const double* force, const InterfaceView& view);
@@ -65,7 +67,9 @@ class InterfaceViewer {
   static bool pulls_at_edge(const Layout& layout, const double* force);
   double edge_opening(const Layout& layout, const double* gap) const;
   void look_at_plane(const Layout& layout, const double* gap, InterfaceView& view);
-  const double* gaps(const Layout& layout, const State& state);
+  double share_above(const Layout& layout, double level, const double* value);
+  static double pulling_points(const Layout& layout, const double* force);
+  const double* gaps(const Layout& layout, const double* opening, const double* force);
   std::vector<Layout> layouts_;
   std::vector<BaseMotion> bases_;
   double tolerance_;

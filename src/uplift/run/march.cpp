@@ -29,17 +29,24 @@ long steps_of(const Stage& stage) {
 void Runner::note_views() {
   StepRecord& steps = run_.result.steps;
   steps.add(seen_->time, views_, plan_.gap_tolerance);
-  if (seen_->time >= planned_ - tail_)
-    for (std::size_t k = 0; k < views_.size(); ++k) steps.tail[k].push_back(viewer_.pose(*seen_, k, views_[k]));
-  find_farthest();
+  if (seen_->time >= planned_ - tail_) note_poses();
+  look_over_bases();
   if (has_walls_) steps.add_slip(model_.interfaces, seen_->opening, plan_.is_wall);
   if (has_strength_) steps.add_strength(views_);
 }
 
-void Runner::find_farthest() {
-  farthest_ = 0;
-  for (std::size_t k = 0; k < views_.size(); ++k)
-    if (!is_wall(k)) farthest_ = std::max(farthest_, views_[k].least_opening);
+[[gnu::noinline]] void Runner::note_poses() {
+  for (std::size_t k = 0; k < views_.size(); ++k) run_.result.steps.tail[k].push_back(viewer_.pose(*seen_, k, views_[k]));
+}
+
+void Runner::look_over_bases() {
+  farthest_ = uplifted_ = 0;
+  std::size_t k = 0;
+  for (const InterfaceView& view : views_) {
+    if (is_wall(k++)) continue;
+    farthest_ = std::max(farthest_, view.least_opening);
+    uplifted_ = std::max(uplifted_, view.open_area);
+  }
 }
 
 /// Momentum that impacts of constraints transferred in the last step, of each interface.
@@ -123,13 +130,17 @@ bool Runner::check_limits(const Stepper& stepper) {
 bool Runner::moves_little(const Model& model, const std::vector<int>& rotations) {
   for (int unknown : rotations)
     if (std::abs(seen_->displacement[unknown]) > plan_.rotation_limit) {
-      run_.result.status = RunStatus::overturned;
-      run_.result.reason = fmt::format("{} passed {:.3g} rad at {}, the limit of the small-displacement model", model.unknown_name(unknown),
-                                       plan_.rotation_limit, when());
+      overturn(model, unknown);
       return false;
     }
   return (!rotations.empty() || surfaces_turn_little()) &&
          (plan_.separation_limit <= 0 || farthest_ <= plan_.separation_limit || surfaces_stay_near());
+}
+
+[[gnu::cold]] void Runner::overturn(const Model& model, int unknown) {
+  run_.result.status = RunStatus::overturned;
+  run_.result.reason = fmt::format("{} passed {:.3g} rad at {}, the limit of the small-displacement model", model.unknown_name(unknown),
+                                   plan_.rotation_limit, when());
 }
 
 /// Nodes of solids do not turn: there the slope of the opening's best plane is what the building has turned against the soil.
@@ -236,7 +247,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
     note_views();
     note_impulses(stepper);
     recorder.record(step % plan_.every == 0 || step == steps);
-    if (picture_every > 0) recorder.note_largest_uplift();
+    if (picture_every > 0) recorder.note_uplift(uplifted_);
     if (picture_every > 0 && step % picture_every == 0) recorder.picture(*seen_);
   };
   run_.result.steps.reserve(model_.interfaces.size(), static_cast<std::size_t>(steps) + 1,

@@ -21,8 +21,7 @@ RadiationForces::RadiationForces(const Model& model, const Sparse& b) : force_(V
   }
 }
 
-const Vector* RadiationForces::forces(const Stepper& stepper) {
-  if (rows_.empty()) return nullptr;
+const Vector& RadiationForces::measure(const Stepper& stepper) {
   const State& now = stepper.state();
   const StepBalance at = stepper.averages_acceleration() ? stepper.balance(now.acceleration) : StepBalance::of_state(now, now.acceleration);
   for (const Row& row : rows_) {
@@ -31,7 +30,7 @@ const Vector* RadiationForces::forces(const Stepper& stepper) {
     for (const auto& [function, factor] : row.motions) rate += factor * at.motion(*function, 1);
     force_[row.row] = row.damping * rate;
   }
-  return &force_;
+  return force_;
 }
 
 }  // namespace uplift

@@ -15,9 +15,10 @@ class RadiationForces {
   RadiationForces(const Model& model, const Sparse& b);
   /// One force per row of all interfaces [N, N m], tension > 0, of the last step: with the path average the mean over the step, else at its
   /// end. It stays until the next call; null without dashpots.
-  const Vector* forces(const Stepper& stepper);
+  const Vector* forces(const Stepper& stepper) { return rows_.empty() ? nullptr : &measure(stepper); }
 
  private:
+  const Vector& measure(const Stepper& stepper);
   struct Row {
     int row;
     double damping;                                               // N s/m, N m s/rad

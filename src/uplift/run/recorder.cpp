@@ -240,18 +240,23 @@ double Recorder::made(const Source& source) const {
   }
 }
 
+/// The columns that are made from several numbers.
+[[gnu::noinline]] void Recorder::make(std::size_t at) {
+  for (const Source& each : made_) each.to[at] = made(each);
+}
+
 void Recorder::record(bool row, double abscissa) {
   const State& state = state_;
   if (wants_acceleration_ && stepper_ != nullptr) stepper_->acceleration(acceleration_);
   if (stepper_ == nullptr || !stepper_->averages_acceleration()) before_ = state.time;
-  floors_.record(acceleration_, before_, state.time);
+  if (floors_.any()) floors_.record(acceleration_, before_, state.time);
   if (forces_) forces_->record();
   const std::size_t at = count_;
 #pragma GCC unroll 4
   for (const Source& each : placed_) each.to[at] = *each.place;
 #pragma GCC unroll 4
   for (const Source& each : entries_) each.to[at] = each.factor * (state.*each.vector).data()[each.entry];
-  for (const Source& each : made_) each.to[at] = made(each);
+  if (!made_.empty()) make(at);
   time_[at] = abscissa;
   before_ = state.time;
   is_row_[at] = row;
@@ -288,19 +293,39 @@ void Recorder::flush() {
 
 void Recorder::combine(std::size_t count) {
   constexpr double less = 1 - 1e-12;  // the exact length is only taken where it may be the largest
+  alignas(64) std::array<std::array<double, many>, 2> values;
   for (std::size_t k = 0; k < combined_.size(); ++k) {
-    if (combined_[k].empty()) continue;  // it stays unknown
+    const std::vector<std::vector<Term>>& components = combined_[k];
+    if (components.empty() || count == 0) continue;  // it stays unknown
     CombinedPeak& peak = result_.combined[k];
-    for (std::size_t i = 0; i < count; ++i) {
-      std::array<double, 2> value{};
-      for (std::size_t c = 0; c < combined_[k].size(); ++c) {
-        for (const Term& term : combined_[k][c]) value[c] += term.factor * term.numbers[i];
-        peak.least[c] = peak.known ? std::min(peak.least[c], value[c]) : value[c];
-        peak.most[c] = peak.known ? std::max(peak.most[c], value[c]) : value[c];
+    std::array<Lanes, 2> least, most;
+    for (std::size_t c = 0; c < components.size(); ++c) {
+      double* to = values[c].data();
+      for_lanes(static_cast<std::ptrdiff_t>(count), [&](const auto& at) {
+        Lanes value = 0;
+        for (const Term& term : components[c]) value += term.factor * at(term.numbers);
+        at.put(to, value);
+      });
+      least[c] = peak.known ? peak.least[c] : to[0], most[c] = peak.known ? peak.most[c] : to[0];
+    }
+    Lanes longest = 0;  // squares
+    for_lanes(static_cast<std::ptrdiff_t>(count), [&](const auto& at) {
+      Lanes square = 0;
+      for (std::size_t c = 0; c < components.size(); ++c) {
+        const Lanes value = at(values[c].data(), values[c][0]);
+        least[c] = choose(value < least[c], value, least[c]);  // never what is not a number
+        most[c] = choose(value > most[c], value, most[c]);
+        square += value * value;
       }
-      peak.known = true;
-      if (!(value[0] * value[0] + value[1] * value[1] > less * peak.value * peak.value)) continue;
-      const double length = combined_[k].size() == 1 ? value[0] : std::hypot(value[0], value[1]);
+      longest = choose(square > longest, square, longest);
+    });
+    for (std::size_t c = 0; c < components.size(); ++c) peak.least[c] = smallest(least[c]), peak.most[c] = largest(most[c]);
+    peak.known = true;
+    if (!(largest(longest) > less * peak.value * peak.value)) continue;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double one = values[0][i], two = components.size() > 1 ? values[1][i] : 0;
+      if (!(one * one + two * two > less * peak.value * peak.value)) continue;
+      const double length = components.size() == 1 ? one : std::hypot(one, two);
       if (std::abs(length) > std::abs(peak.value)) peak.value = length, peak.time = time_[i];
     }
   }
@@ -334,12 +359,9 @@ void Recorder::picture(const State& state) {
   pictures_.add(frame_of(state), state);
 }
 
-void Recorder::note_largest_uplift() {
-  double largest = peak_uplift_;
-  for (std::size_t k = 0; k < views_.size(); ++k)
-    if (plan_.is_wall.empty() || !plan_.is_wall[k]) largest = std::max(largest, views_[k].open_area);
-  if (!(largest > peak_uplift_)) return;
-  peak_uplift_ = largest;
+/// Its displacements come later.
+[[gnu::noinline]] void Recorder::keep_peak(double share) {
+  peak_uplift_ = share;
   peak_frame_ = frame_of(state_);
   peak_coordinates_ = state_.displacement;
   peak_load_factor_ = state_.load_factor;

@@ -33,9 +33,11 @@ class Recorder {
   void resume(const RunState& run);
   /// Keeps a frame for the animation.
   void picture(const State& state);
-  /// Keeps the state as a frame when a larger share of an interface is uplifted than ever before. The frames at regular times miss a short
-  /// peak, and the animation starts at the peak.
-  void note_largest_uplift();
+  /// Keeps the state as a frame when a larger share of an interface is uplifted than ever before: `share`, the largest of those that are no
+  /// walls. The frames at regular times miss a short peak, and the animation starts at the peak.
+  void note_uplift(double share) {
+    if (share > peak_uplift_) keep_peak(share);
+  }
 
  private:
   static constexpr std::size_t many = 64;
@@ -54,8 +56,10 @@ class Recorder {
   };
   Source source_of(const Request& request) const;
   double made(const Source& source) const;
+  void make(std::size_t at);
   double ground(const Request& request, double time) const;
   Frame frame_of(const State& state) const;
+  void keep_peak(double share);
   void complete_peak();
   void flush();
   /// The combined motions of the first `count` of the last steps.

@@ -53,13 +53,15 @@ class Runner {
   ForceStage force_stage(const Stage& stage) const;
   void show(const Stage& stage, const Stepper* stepper, long step, bool last);
   void note_views();
+  void note_poses();
   bool is_wall(std::size_t interface) const { return has_walls_ && plan_.is_wall[interface]; }
   void sum_up(double step);
   void note_impulses(const Stepper& stepper);
   bool check_limits(const Stepper& stepper);
-  void find_farthest();
+  void look_over_bases();
   std::string when() const;
   bool moves_little(const Model& model, const std::vector<int>& rotations);
+  void overturn(const Model& model, int unknown);
   bool surfaces_turn_little();
   bool surfaces_stay_near();
   void finish_energy(const Stepper& stepper);
@@ -90,6 +92,7 @@ class Runner {
   bool has_walls_ = false;         // some interface is no base
   bool has_strength_ = false;      // the ground under some foundation yields or lets it slide
   double farthest_ = 0;            // m: largest of the bases' least openings, now
+  double uplifted_ = 0;            // largest of their open shares, now
   double planned_ = 0, tail_ = 0;  // s: of the dynamic stages; at their end the base's pose is kept for this long
   double shown_ = 0;               // s: taken by the observer
 };

@@ -43,7 +43,7 @@ bool Runner::statics(const Stage& stage) {
   const auto after_step = [&](const StaticProgress& progress) {
     record(progress);
     static_share_ = progress.share;
-    find_farthest();
+    look_over_bases();
     return moves_little(resting, rotations);
   };
   const bool begins_second_order = stage.p_delta && geometric_ == nullptr;
@@ -175,7 +175,7 @@ bool Runner::stand_in_second_order(const Stage& stage, const Energies& before, E
   Recorder recorder(resting, plan_, run_.state, energies, nullptr, views_, {resting, second_order_of(stage)}, 1, 0, run_.load_steps);
   recorder.record(true, run_.static_stages + 1);
   recorder.finish();
-  find_farthest();
+  look_over_bases();
   return true;
 }
 
