@@ -31,11 +31,6 @@ struct Beginning {
   }
 };
 
-/// Seldom: where another solver takes the step.
-[[gnu::noinline]] void copy(const JointFilterInput& from, JointFilterInput& to) {
-  to = from;
-}
-
 }  // namespace
 
 JointFilter::JointFilter(const Model& model, const Behaviours& behaviours, const Scheme& scheme)
@@ -116,7 +111,8 @@ void JointFilter::shorten(double shrink) {
 }
 
 void JointFilter::begin(JointFilterInput& input) {
-  if (ready_ != &input) copy(*ready_, input);
+  if (ready_ == &input) return;
+  input = *ready_;
   ready_ = &input;
 }
 
@@ -132,7 +128,7 @@ void JointFilter::begin_footing(Footing& footing, JointFilterInput& input) {
   footing.components == 3 ? begin_rows<3>(footing, input) : begin_rows<6>(footing, input);
 }
 
-[[gnu::noinline]] double JointFilter::end_footing(Footing& footing, const InterfaceSolution& solution, double to_mean, const State& now, const State& next,
+double JointFilter::end_footing(Footing& footing, const InterfaceSolution& solution, double to_mean, const State& now, const State& next,
                                 JointFilterInput& input) const {
   return footing.components == 3 ? end_rows<3>(footing, solution, to_mean, now, next, input)
                                  : end_rows<6>(footing, solution, to_mean, now, next, input);

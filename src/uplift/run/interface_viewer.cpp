@@ -235,7 +235,7 @@ void InterfaceViewer::look_at_plane(const Layout& layout, const double* gap, Int
 }
 
 /// One point with rotations: its law knows how much of the footing is open. A pressure is not among its forces.
-[[gnu::noinline]] void InterfaceViewer::look_at_footing(const Layout& layout, const Vector& opening, const Vector& force, const Vector& history,
+void InterfaceViewer::look_at_footing(const Layout& layout, const Vector& opening, const Vector& force, const Vector& history,
                                       const Vector* radiation, InterfaceView& view) const {
   const double* rows = opening.data() + layout.first;
   const FootingContact contact = layout.footing->contact(layout.batch, rows, history.data() + layout.first_history);
@@ -290,7 +290,8 @@ void InterfaceViewer::look_at_points(const Layout& layout, const State& state, I
   const int n = layout.points;
   const double *opening = state.opening.data() + layout.normal, *p = state.mean_force.data() + layout.normal;
   const double* gap = layout.gaps_differ ? gaps(layout, opening, state.force.data() + layout.normal) : opening;
-  const double *area = layout.area.data(), *inverse = layout.inverse_area.data(), *along = layout.along.data(), *slope = layout.slope_weight[0].data();
+  const double *area = layout.area.data(), *inverse = layout.inverse_area.data(), *along = layout.along.data(),
+               *slope = layout.slope_weight[0].data();
   const double tolerance = tolerance_;
   const Lanes zero = 0;
   Lanes axials = zero, moments = zero, slopes = zero, open = zero, widest = zero, traction = zero, pull = zero, least = gap[0];

@@ -38,7 +38,7 @@ class InterfaceViewer {
  private:
   struct Layout {
     int first = 0, points = 0, translations = 0, normal = 0;  // normal: its first row
-    Vector area, inverse_area, along, across;  // along t and along n from the reference point [m]
+    Vector area, inverse_area, along, across;                 // along t and along n from the reference point [m]
     std::array<Vector, 2> slope_weight;
     Space space;
     Matrix resultant_rows;  // in space, and where the normals differ; else empty: the sums are then taken directly
@@ -47,7 +47,7 @@ class InterfaceViewer {
     double stiffness = 0;   // Pa/m of the closed joint; infinite for constraints
     bool bonded = false;    // it may pull: the tension share is asked for
     GapRule rule;
-    bool gaps_differ = false;  // from the openings
+    bool gaps_differ = false;               // from the openings
     std::vector<Facets::Corner> corners;    // of the surface that are no points: openings are extrapolated to them
     bool at_edge = false;                   // pressures too
     bool plane = false;                     // openings are those of a plane, closed ones too: they are extrapolated wherever they are
