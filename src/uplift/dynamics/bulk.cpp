@@ -8,7 +8,7 @@
 #include "uplift/dynamics/split_response.h"
 #include "uplift/linear/large.h"
 #include "uplift/math/columns.h"
-#include "uplift/math/small.h"
+#include "uplift/math/small_product.h"
 #include "uplift/math/upper_sum.h"
 #include "uplift/model/matrix_sum.h"
 #include "uplift/model/reduced.h"

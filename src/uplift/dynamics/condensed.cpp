@@ -5,7 +5,7 @@
 
 #include "uplift/math/columns.h"
 #include "uplift/math/dense.h"
-#include "uplift/math/small.h"
+#include "uplift/math/small_product.h"
 #include "uplift/model/base_size.h"
 
 namespace uplift {
