@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "uplift/linear/blas.h"
+#include "uplift/linear/singular_values.h"
 #include "uplift/math/dense.h"
-#include "uplift/math/singular_values.h"
 
 namespace uplift {
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "uplift/linear/singular_values.h"
 #include "uplift/linear/solver.h"
 #include "uplift/math/dense.h"
 #include "uplift/reduction/linear_march.h"
@@ -32,6 +33,27 @@ Matrix with_singular_values(const Vector& singular, const Vector& weights, Index
   const Index rows = weights.size(), count = singular.size();
   const Matrix q = columns_of_q(Qr(random_matrix(rows, count, 1)), count), r = columns_of_q(Qr(random_matrix(columns, count, 2)), count);
   return weights.cwiseSqrt().cwiseInverse().asDiagonal() * (q * singular.asDiagonal() * r.transpose());
+}
+
+// A = Q diag(s) R^T with more rows than columns, and with fewer.
+TEST(SingularValues, OfTallWideAndEmptyMatrices) {
+  const Vector singular{{3.0, 2.0, 1e-3, 1e-9}};
+  for (const auto& [rows, columns] : {std::pair<Index, Index>{9, 4}, {4, 9}, {4, 4}, {9, 7}, {7, 9}}) {
+    const Matrix a = with_singular_values(singular, Vector::Ones(rows), columns);
+    const SingularValues found(a);
+    const Index count = std::min(rows, columns);
+    ASSERT_EQ(found.values().size(), count);
+    ASSERT_EQ(found.left().rows(), rows);
+    ASSERT_EQ(found.left().cols(), count);
+    for (Index k = 0; k < count; ++k) EXPECT_NEAR(found.values()[k], k < 4 ? singular[k] : 0, 1e-14) << rows << "x" << columns;
+    EXPECT_LT((found.left().transpose() * found.left() - Matrix::Identity(count, count)).cwiseAbs().maxCoeff(), 1e-14);
+    // U^T A has rows of these lengths, at right angles to one another
+    const Matrix turned = found.left().transpose() * a;
+    const Vector squares = found.values().cwiseAbs2();
+    EXPECT_LT((turned * turned.transpose() - Matrix(squares.asDiagonal())).cwiseAbs().maxCoeff(), 1e-13);
+  }
+  EXPECT_EQ(SingularValues(Matrix(0, 5)).values().size(), 0);
+  EXPECT_EQ(SingularValues(Matrix(5, 0)).left().cols(), 0);
 }
 
 void add(Matrix displacements, Pod& pod) {
