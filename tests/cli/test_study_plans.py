@@ -61,6 +61,20 @@ class StudyPlans(CliTest):
         self.study(IDA.replace(limit, limit + 'of = "soil"\n'))
         self.uplift("study", "check", "s.study")
 
+    def test_a_negative_limit_is_one_of_a_change_alone(self):
+        # the size of an opening counts: every run would exceed -1 mm, also one whose base stays closed
+        self.refused(IDA.replace('"1 mm"', '"-1 mm"'), "limit =", "expected a number >= 0")
+        self.study(IDA.replace("max_opening", "change_of_moment").replace('"1 mm"', "-0.1"))
+        self.uplift("study", "check", "s.study")
+
+    def test_a_reduced_model_that_does_not_exist(self):
+        self.refused('reduced_model = "../no.rom"\n' + IDA, "reduced_model", 'expected a file, found no file')
+
+    def test_a_cloud_is_of_demands_that_grow(self):
+        # regressed on a safety, the curve would be the probability that the structure is safe
+        cloud = IDA.replace('type = "ida"\nstart = 0.1\nlargest = 20', 'type = "cloud"')
+        self.refused(cloud.replace('"max_opening"\nlimit = "1 mm"', '"min_overturning_safety"\nlimit = 1.1'), "quantity", "expected a number that grows with the intensity")
+
     def test_percentiles_of_floors_need_common_levels(self):
         self.refused("floor_spectra = true\n" + IDA, "floor_spectra", "expected stripes or cloud as the method")
 

@@ -131,6 +131,8 @@ export interface StudyFloor {
   damping: number;
   level: number;
   runs: number;
+  lost: number;
+  missing: number;
   frequencies: number[];
   p16: number[];
   p50: number[];

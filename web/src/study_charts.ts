@@ -134,8 +134,11 @@ function ida_chart(study: Study, limit: Limit, k: number): Chart[] {
 /** A demand of zero has no logarithm. */
 const without_demand = (count: number): string => (count === 0 ? "" : ` ${count === 1 ? "One run whose demand is zero is" : `${count} runs whose demand is zero are`} left out.`);
 
+const not_drawn = (count: number): string => (count === 0 ? "" : ` ${count === 1 ? "One run whose demand is zero is" : `${count} runs whose demand is zero are`} not drawn; percentiles count ${count === 1 ? "it" : "them"}.`);
+
 function points_chart(study: Study, limit: Limit, k: number): Chart[] {
-  const all = study.curves.flatMap((curve) => points_of(curve, k)).filter(([demand, intensity]) => demand > 0 && intensity > 0);
+  const every = study.curves.flatMap((curve) => points_of(curve, k)).filter(([, intensity]) => intensity > 0);
+  const all = every.filter(([demand]) => demand > 0);
   if (limit.quantity === "" || all.length === 0) return [];
   const intensities = all.map(([, intensity]) => intensity);
   const [least, most] = [Math.min(...intensities), Math.max(...intensities)];
@@ -143,24 +146,29 @@ function points_chart(study: Study, limit: Limit, k: number): Chart[] {
   const grid = Array.from({ length: 42 }, (_, i) => least * Math.pow(most / least, i / 41));
   const line = (shift: number): number[] => grid.map((x) => Math.exp((regression?.a ?? 0) + (regression?.b ?? 0) * Math.log(x) + shift * (regression?.sigma ?? 0)));
   const levels = [...new Set(intensities)].sort((a, b) => a - b);
-  const at = (level: number): number[] => all.filter(([, intensity]) => intensity === level).map(([demand]) => demand).sort((a, b) => a - b);
+  const at = (level: number): number[] => every.filter(([, intensity]) => intensity === level).map(([demand]) => demand).sort((a, b) => a - b);
   return [{
     id: id_of("demand", k), section: "demands", title: limit.name, origin: ORIGIN,
     caption: regression
       ? `Regression ln demand = a + b ln intensity with a = ${significant(regression.a, 3)}, b = ${significant(regression.b, 3)}, standard deviation ${significant(regression.sigma, 3)}; dashed: one standard deviation.${without_demand(regression.without_demand)}`
-      : "Every run with a result, and the percentiles of each intensity.",
+      : `Every run with a result, and the percentiles of each intensity.${not_drawn(every.length - all.length)}`,
     x: intensity_axis(study, true), y: { label: limit.label.replace(/^./, (c) => c.toUpperCase()), unit: limit.unit, log: true },
     series: [
       { label: `${all.length} runs`, x: all.map(([, x]) => x), y: all.map(([y]) => y), style: "points", group: "runs" },
       ...(regression
         ? [{ label: "regression", x: grid, y: line(0), group: "fit" }, { label: "84 %", x: grid, y: line(1), dash: true, group: "fit" }, { label: "16 %", x: grid, y: line(-1), dash: true, group: "fit" }]
-        : FRACTILES.map(([share, label]): Series => ({ label, x: levels, y: levels.map((level) => percentile(at(level), share)), ...(share === 0.5 ? {} : { dash: true }), style: "line", group: "percentiles" }))),
+        : FRACTILES.map(([share, label]): Series => ({ label, x: levels, y: levels.map((level) => percentile(at(level), share) || null), ...(share === 0.5 ? {} : { dash: true }), style: "line", group: "percentiles" }))),
       ...(limit.limit > 0 ? [{ label: "limit", x: [least, most], y: [limit.limit, limit.limit], dash: true, style: "line" as const, group: "limit" }] : []),
     ],
   }];
 }
 
 // ---- floor spectra ----
+
+/** What the percentiles of an intensity are made of: "8 at 0.20 g, of which 2 lost the structure, and 1 without an outcome left out". */
+function floor_runs({ runs, lost, missing }: StudyFloor, at: string): string {
+  return `${runs} at ${at}${lost > 0 ? `, of which ${lost} lost the structure` : ""}${missing > 0 ? `, and ${missing} without an outcome left out` : ""}`;
+}
 
 function floor_charts(study: Study): Chart[] {
   const kinds = new Map<string, StudyFloor[]>();
@@ -171,7 +179,7 @@ function floor_charts(study: Study): Chart[] {
   const named = ({ level }: StudyFloor): string => (study.method.type === "cloud" ? `factor ${significant(level, 3)}` : intensity_text(study, level));
   return [...kinds].map(([title, levels], k) => ({
     id: id_of("floor", k), section: "floors", title, origin: ORIGIN,
-    caption: `Median and range from 16 % to 84 % over the runs of each intensity (${levels.map((each) => `${each.runs} at ${named(each)}`).join(", ")}).`,
+    caption: `Median and range from 16 % to 84 % over the runs of each intensity (${levels.map((each) => floor_runs(each, named(each))).join("; ")}).${levels.some(({ lost }) => lost > 0) ? " Spectra of runs that lost the structure are those up to there, lower bounds of what comes." : ""}`,
     x: { label: "Frequency", unit: "Hz", log: true }, y: { label: "Pseudo-acceleration", unit: "m/s2", log: true },
     series: levels.flatMap((each): Series[] => [
       { label: `${named(each)}, median`, x: each.frequencies, y: each.p50, style: "line", group: named(each) },

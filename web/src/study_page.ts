@@ -128,7 +128,7 @@ function tornado_card(study: Study, limit: Limit): HTMLElement | null {
       ...rows, s("path", { class: "tornado-axis", d: `M${middle} 2V${bottom}` }), s("text", { x: middle, y: bottom + 16, "text-anchor": "middle" }, text(centre))),
     h("div", { class: "spectrum-keys" },
       h("span", {}, h("i", { class: "dot tornado-low" }), "smallest third of the values"), h("span", {}, h("i", { class: "dot tornado-high" }), "largest third")),
-    h("figcaption", {}, `Geometric means of the ${what} over the samples with the smallest and with the largest third of the values of each variable, and of all: ${changes}.`));
+    h("figcaption", {}, `Geometric means of the ${what} over the samples with the smallest and with the largest third of the values of each variable${study.pairing === "crossed" ? ", under the motions for which all samples have one" : ""}, and changes from the middle of these means: ${changes}.`));
 }
 
 /** One drawing for each limit; none without variables. */

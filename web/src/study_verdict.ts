@@ -36,14 +36,20 @@ function headline(study: Study, limit: Limit): string {
   return `No fragility curve for ${quoted(limit.name)}: ${fit.reason}`;
 }
 
-/** How many runs count, and what those without an outcome change. */
+/** Capacities that stand for a wide interval, whose upper end is what is fitted. */
+function open_text({ capacities }: Limit): string {
+  const open = capacities.filter(({ found }) => !found).length;
+  return open === 0 ? "" : ` ${open} of ${capacities.length} capacities are not within the tolerance of the search: the median may be off.`;
+}
+
+/** How many runs count, what those without an outcome change, and whether the searches have come to their end. */
 export function counts_text(limit: Limit): string {
   const all = counted(limit) + limit.unknown;
-  if (limit.unknown === 0) return `All ${plural(all, "run")} count.`;
+  if (limit.unknown === 0) return `All ${plural(all, "run")} count.${open_text(limit)}`;
   const change = unknown_change(limit);
   const those = limit.unknown === 1 ? "one without outcome changes" : `${limit.unknown} without outcome change`;
   const effect = change === null ? `${limit.unknown} have no outcome` : change < 5e-4 ? `${those} nothing` : `${those} the median by at most ${percent(change)}`;
-  return `${counted(limit)} of ${plural(all, "run")} count; ${effect}.`;
+  return `${counted(limit)} of ${plural(all, "run")} count; ${effect}.${open_text(limit)}`;
 }
 
 const probability_text = (probability: number): string => `${significant(100 * probability, 2)} %`;

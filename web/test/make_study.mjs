@@ -96,7 +96,7 @@ export function ida_study(count = 12, samples = 5) {
     name: "rotation of 2 mrad", quantity: "residual_rotation", label: "residual rotation of the base", unit: "rad", limit: 2e-3, ...counts,
     fit: full_fit(0.9, 0.5, 0.1), unknown_survived: fitted(0.9, 0.5), unknown_exceeded: fitted(0.9, 0.5), ...site({ theta: 0.9, beta: 0.5 }),
     fractiles: { demands: [5e-4, 1e-3, 2e-3], p16: [0.2, 0.4, null], p50: [0.3, null, null], p84: [null, null, null] },
-    capacities: capacities.map((each) => ({ ...each, capacity: { known: "at_least", intensity: 6 } })),
+    capacities: capacities.map((each, i) => ({ ...each, found: i > 1, capacity: { known: "at_least", intensity: 6 } })),
   });
   for (const curve of curves) for (const each of curve.runs) (each.states.push("survived"), each.demands.push(each.demands[0] / 40));
   return study_of({
@@ -120,11 +120,12 @@ export function ida_study(count = 12, samples = 5) {
 /** Ten motions at five intensities, two runs without outcome, floor spectra. */
 export function stripes_study() {
   const z = quantiles(10);
+  const closed = (i, k) => k === 0 && i > 3; // the strongest six stay closed at the lowest intensity
   const levels = [0.2, 0.3, 0.45, 0.7, 1];
   const motions = motions_of(10);
   const fails = (i, k) => k === 2 && i < 2;
   const curves = motions.map(({ name }, i) => ({
-    motion: name, sample: 0, complete: true, runs: levels.map((level, k) => (fails(i, k) ? run(level, null, i === 0 ? "failed" : "timeout") : run(level, LIMIT * (level / (THETA * Math.exp(BETA * z[i]))) ** 1.5))),
+    motion: name, sample: 0, complete: true, runs: levels.map((level, k) => (fails(i, k) ? run(level, null, i === 0 ? "failed" : "timeout") : run(level, closed(i, k) ? 0 : LIMIT * (level / (THETA * Math.exp(BETA * z[i]))) ** 1.5))),
   }));
   const stripes = levels.map((intensity, k) => {
     const states = curves.map(({ runs }) => runs[k].states[0]);
@@ -144,7 +145,7 @@ export function stripes_study() {
       { id: "a1", motion: "m_1", sample: 0, intensity: 0.45, factor: 1.5, outcome: "failed", reason: "step 812 did not converge", case: "runs/a1/case.resolved.toml", replay: "runs/a1/problem.json" },
       { id: "a2", motion: "m_2", sample: 0, intensity: 0.45, factor: 1.5, outcome: "timeout", reason: "longer than 10 min", case: "runs/a2/case.resolved.toml", replay: "" },
     ],
-    floor_spectra: [0.2, 0.45, 1].map((level) => ({ floor: "deck", damping: 0.05, level, runs: level === 0.45 ? 8 : 10, frequencies, p16: spectrum(level, 0.8), p50: spectrum(level, 1), p84: spectrum(level, 1.25) })),
+    floor_spectra: [0.2, 0.45, 1].map((level) => ({ floor: "deck", damping: 0.05, level, runs: level === 0.45 ? 8 : 10, lost: level === 1 ? 3 : 0, missing: level === 0.45 ? 2 : 0, frequencies, p16: spectrum(level, 0.8), p50: spectrum(level, 1), p84: spectrum(level, 1.25) })),
   });
 }
 

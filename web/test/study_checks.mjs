@@ -46,6 +46,8 @@ async function check_ida(browser, check, shot) {
     check.ok(text.includes(`HCLPF ${(THETA * Math.exp(-1.65 * (BETA_R + BETA_U))).toPrecision(3)} g`), "the HCLPF follows from both dispersions");
     check.ok(text.includes("between motions 0.300, between samples 0.200"), "which are told apart");
     check.ok(/rotation of 2 mrad \(residual rotation of the base at most 2\.00 mrad\): median 0\.900 g/.test(text), "the other limit has a line", text);
+    check.ok(text.includes("2 of 60 capacities are not within the tolerance of the search"), "searches that did not come to their end are stated", text);
+    check.ok(text.split("within the tolerance").length === 2, "of the limit whose they are");
     check.equal(await page.locator("#verdict .fragility-line").count(), 4, "the first page draws both curves, with a key each");
     check.equal(report.charts.map((chart) => chart.id).join(), "fragility_all,fragility_1,fragility_2,ida_1,ida_2", "figures in their order");
     // the capacities are the quantiles of the curve: their shares lie on it
@@ -95,9 +97,15 @@ async function check_stripes(browser, check, shot) {
     const failures = rows_of(report, "failures");
     check.equal(failures.map((each) => `${each.outcome}: ${each.run}; ${each.replay}`).join(" | "),
       "failed: uplift run runs/a1/case.resolved.toml; uplift replay runs/a1/problem.json | timeout: uplift run runs/a2/case.resolved.toml; ", "failed runs can be repeated");
-    check.equal(chart_of(report, "demand_1").series[0].x.length, 48, "unknown runs are no demands");
+    const demands = chart_of(report, "demand_1");
+    check.equal(demands.series[0].x.length, 42, "unknown runs are no demands, and zeros are not drawn");
+    check.ok(demands.caption.endsWith("6 runs whose demand is zero are not drawn; percentiles count them."), "which is said", demands.caption);
+    // at 0.2 g six of ten demands are 0: so is the median, and 84 % lies between the second and the third largest
+    const [low, middle, high] = [0.16, 0.5, 0.84].map((_, i) => demands.series.filter((each) => each.group === "percentiles")[i].y[0]);
+    const largest = demands.series[0].y.filter((_, i) => demands.series[0].x[i] === 0.2).sort((a, b) => b - a);
+    check.ok(low === null && middle === null && near(high, largest[2] + 0.56 * (largest[1] - largest[2]), 1e-15), "percentiles are those of all runs", `${low} ${middle} ${high}`);
     check.equal(chart_of(report, "floor_1").series.map((each) => each.style).join(), "line,band,line,band,line,band", "floor spectra show the median and the range of each intensity");
-    check.ok(chart_of(report, "floor_1").caption.includes("8 at 0.450"), "with the number of runs");
+    check.ok(chart_of(report, "floor_1").caption.replaceAll("\u00a0", " ").includes("(10 at 0.200 g; 8 at 0.450 g, and 2 without an outcome left out; 10 at 1.00 g, of which 3 lost the structure)."), "with the number of runs", chart_of(report, "floor_1").caption);
     check.equal(await page.locator(".chip-failed").count(), 2, "failures are marked");
   }, shot && { folder: shot, name: "study_stripes" });
 }

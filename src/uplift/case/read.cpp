@@ -81,8 +81,12 @@ std::vector<std::string> input_files(const Case& read) {
     if (const Values* law = stated_bulk_law(*solid.table))
       if (const std::filesystem::path path = library_of(*law); std::filesystem::is_regular_file(path))  // else the law refuses it
         files.push_back(path.lexically_normal().string());
-  if (const std::optional<std::string>& file = read.input->reduced_model)
-    files.push_back(path_beside(read.values.where("reduced_model"), *file).lexically_normal().string());
+  if (const std::optional<std::string>& file = read.input->reduced_model) {
+    const Where& where = read.values.where("reduced_model");
+    const std::filesystem::path path = path_beside(where, *file);
+    require_file(path, where, "reduced_model");
+    files.push_back(path.lexically_normal().string());
+  }
   for (const CaseRecordSource& record : read.input->records)
     if (record.file) files.push_back(record.location);
   for (const CaseVariant& variant : read.input->variants)

@@ -42,8 +42,8 @@ OrRefused<Fragility> refit(std::vector<RecordCapacity> capacities, const Fragili
 OrRefused<Fragility> refit(CloudData cloud, const Fragility&, Draw draw) {
   for (CloudPoint& p : cloud.points) {
     const double drawn = std::exp(cloud.a + cloud.b * std::log(p.im) + cloud.sigma * draw.normal());
-    const bool censored = p.at_least && drawn > p.demand;
-    p = {p.im, censored ? p.demand : drawn, censored};
+    const bool above = p.at_least && drawn > p.demand, below = p.at_most && drawn < p.demand;
+    p = {p.im, above || below ? p.demand : drawn, above, below};
   }
   auto fitted = fit_cloud(cloud.points, cloud.threshold);
   if (const auto* refused = std::get_if<Refused>(&fitted)) return *refused;

@@ -38,8 +38,9 @@ FragilityLikelihood cloud_likelihood(const CloudData& data, std::vector<Fragilit
   for (const CloudPoint& p : data.points)
     likelihood.terms.push_back({.x = std::log(p.im),
                                 .y = std::log(p.demand) - std::log(data.threshold),
-                                .exact = p.at_least ? 0.0 : 1.0,
-                                .above = p.at_least ? 1.0 : 0.0});
+                                .exact = p.at_least || p.at_most ? 0.0 : 1.0,
+                                .above = p.at_least ? 1.0 : 0.0,
+                                .below = p.at_most ? 1.0 : 0.0});
   likelihood.standardise();
   double n = 0, mean = 0, squares = 0;
   for (const auto& t : likelihood.terms) ++n, mean += t.y;

@@ -96,11 +96,12 @@ struct RecordCapacity {
 OrRefused<Fragility> fit_capacities(std::span<const RecordCapacity>);
 
 /// One run of a cloud analysis: demand > 0 in any unit; `at_least`: the run ended early, or the structure was lost, and the demand is a
-/// lower bound.
+/// lower bound; `at_most`: it is an upper bound.
 struct CloudPoint {
   double im = 0;
   double demand = 0;
   bool at_least = false;
+  bool at_most = false;
 };
 
 /// ln demand = a + b ln im + sigma * (standard normal).
@@ -109,7 +110,7 @@ struct CloudFit {
   Fragility fragility;             // theta = exp((ln threshold - a)/b), beta = sigma/b
 };
 
-/// Cloud analysis: regression of demands, as maximum of a censored likelihood where demands are lower bounds. Refused with fewer than
+/// Cloud analysis: regression of demands, as maximum of a censored likelihood where demands are bounds. Refused with fewer than
 /// three exact demands, with one intensity only, where the demand does not grow with im, or without any scatter.
 OrRefused<CloudFit> fit_cloud(std::span<const CloudPoint>, double threshold);
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <tuple>
+#include <utility>
 
 namespace uplift {
 namespace {
@@ -119,9 +121,11 @@ void fit_stripes_of(const StudyLimit& limit, const std::vector<StudyCurve>& curv
   if (const Fragility* curve = std::get_if<Fragility>(&fit.fit.middle)) fit.shared = shared_error_of_stripes(*curve, runs);
 }
 
-/// Demands of runs that ended early are lower bounds where they are demands at all; a lost structure has at least the limit.
+/// Demands of runs that ended early are lower bounds where they are demands at all; a lost structure has at least the limit. Runs of
+/// unknown outcome have at most the limit where they count as survived, at least the limit where they count as exceeded.
 void fit_cloud_of(const StudyLimit& limit, const std::vector<StudyCurve>& curves, StudyLimitFit& fit) {
   std::vector<SharedRun> runs;
+  std::vector<double> unknown;  // intensities
   for (const StudyCurve& curve : curves)
     for (const auto& [intensity, run] : curve.runs()) {
       const std::optional<double> demand = demand_of(limit, *run.result);
@@ -134,7 +138,9 @@ void fit_cloud_of(const StudyLimit& limit, const std::vector<StudyCurve>& curves
       };
       if (outcome == StudyOutcome::completed && size > 0) add(size, false);
       if (outcome == StudyOutcome::overturned || outcome == StudyOutcome::separated) add(std::max(size, limit.limit), true);
-      if (outcome_of(limit, *run.result) == RunOutcome::exceeded && !says_something(outcome)) add(size, true);
+      const RunOutcome counted = outcome_of(limit, *run.result);
+      if (counted == RunOutcome::exceeded && !says_something(outcome)) add(size, true);
+      if (counted == RunOutcome::unknown) unknown.push_back(intensity);
     }
   OrRefused<CloudFit> made = fit_cloud(fit.cloud, limit.limit);
   if (const Refused* refused = std::get_if<Refused>(&made)) {
@@ -142,28 +148,45 @@ void fit_cloud_of(const StudyLimit& limit, const std::vector<StudyCurve>& curves
     return;
   }
   fit.regression = std::get<CloudFit>(std::move(made));
-  // runs without a demand cannot be counted either way in a regression: they are stated beside it
-  fit.fit = {fit.regression->fragility, fit.regression->fragility, fit.regression->fragility};
-  fit.shared = shared_error_of_cloud(*fit.regression, limit.limit, runs);
+  const auto with_unknown = [&](bool exceeded) -> OrRefused<Fragility> {
+    std::vector<CloudPoint> points = fit.cloud;
+    for (const double intensity : unknown) points.push_back({intensity, limit.limit, exceeded, !exceeded});
+    OrRefused<CloudFit> all = fit_cloud(points, limit.limit);
+    if (const Refused* refused = std::get_if<Refused>(&all)) return *refused;
+    return std::get<CloudFit>(std::move(all)).fragility;
+  };
+  // runs with demand 0 have no logarithm: they are stated beside the fit
+  fit.fit = both_ways(with_unknown(false), fit.regression->fragility, with_unknown(true), study_confidence);
+  if (std::holds_alternative<Fragility>(fit.fit.middle)) fit.shared = shared_error_of_cloud(*fit.regression, limit.limit, runs);
 }
 
 // ---- tornado ----
 
-/// Mean logarithm of the response of every sample: of its capacities, or of its demands. Nothing where there is none.
+/// Mean logarithm of the response of every sample: of its capacities, or of its demands. Nothing where there is none. Crossed samples are
+/// compared under the same motions at the same intensities: where a sample has no known capacity, or a demand of 0, its motion is left out
+/// of all of them, because a mean of what is left would be that of other motions.
 std::vector<std::optional<double>> responses(const StudyCase& study, const std::vector<StudyCurve>& curves, std::size_t limit,
                                              const std::vector<StudyCapacity>& capacities) {
-  std::vector<double> sum(study.samples.size()), count(study.samples.size());
-  const auto add = [&](std::size_t sample, double value) {
-    if (value > 0) sum[sample] += std::log(value), count[sample] += 1;
+  std::map<std::pair<std::size_t, double>, std::map<std::size_t, double>> logarithms;  // by motion and intensity, then by sample
+  std::set<std::size_t> samples;
+  const auto add = [&](const StudyCurve& curve, double intensity, double value) {
+    if (value > 0) logarithms[{curve.motion(), intensity}][curve.sample()] = std::log(value);
   };
   for (const StudyCapacity& each : capacities)
-    if (each.left_out && each.left_out->known == Known::exact) add(curves[each.curve].sample(), each.left_out->im);
-  if (capacities.empty())
-    for (const StudyCurve& curve : curves)
-      for (const auto& [intensity, run] : curve.runs())
-        if (const std::optional<double> demand = demand_of(study.plan.limits[limit], *run.result);
-            demand && says_something(run.result->outcome))
-          add(curve.sample(), std::abs(*demand));
+    if (each.left_out && each.left_out->known == Known::exact) add(curves[each.curve], 0, each.left_out->im);
+  for (const StudyCurve& curve : curves) {
+    if (!curve.runs().empty()) samples.insert(curve.sample());
+    if (!capacities.empty()) continue;
+    for (const auto& [intensity, run] : curve.runs())
+      if (const std::optional<double> demand = demand_of(study.plan.limits[limit], *run.result);
+          demand && says_something(run.result->outcome))
+        add(curve, intensity, std::abs(*demand));
+  }
+  std::vector<double> sum(study.samples.size()), count(study.samples.size());
+  for (const auto& [motion, of_samples] : logarithms) {
+    if (study.plan.crossed && of_samples.size() < samples.size()) continue;
+    for (const auto& [sample, logarithm] : of_samples) sum[sample] += logarithm, count[sample] += 1;
+  }
   std::vector<std::optional<double>> means(sum.size());
   for (std::size_t i = 0; i < sum.size(); ++i)
     if (count[i] > 0) means[i] = sum[i] / count[i];
@@ -262,21 +285,26 @@ std::vector<StudyFloor> floor_percentiles(const StudyCase& study, const std::vec
     std::vector<const StudySpectrum*> spectra;
   };
   std::map<std::tuple<double, std::string, double>, Runs> groups;
+  std::map<double, long> missing;
   for (const StudyCurve& curve : curves)
     for (const auto& [intensity, run] : curve.runs()) {
       const std::vector<double>& levels = study.plan.method.levels;
       const double asked = study.plan.method.type == StudyMethod::Type::cloud ? run.point.factor : intensity;
       const double level = *std::ranges::min_element(levels, {}, [&](double each) { return std::abs(each - asked); });  // round-off
+      missing[level] += !says_something(run.result->outcome);
       for (const StudySpectrum& spectrum : run.result->spectra) {
         Runs& group = groups[{level, spectrum.floor, spectrum.damping}];
-        if (group.spectra.empty()) group.floor = {spectrum.floor, spectrum.damping, level, 0, spectrum.frequencies, {}, {}, {}};
-        if (spectrum.frequencies == group.floor.frequencies) group.spectra.push_back(&spectrum);
+        if (group.spectra.empty()) group.floor = {spectrum.floor, spectrum.damping, level, 0, 0, 0, spectrum.frequencies, {}, {}, {}};
+        if (spectrum.frequencies != group.floor.frequencies) continue;
+        group.spectra.push_back(&spectrum);
+        group.floor.lost += run.result->outcome != StudyOutcome::completed;
       }
     }
   std::vector<StudyFloor> made;
   for (auto& [key, group] : groups) {
     StudyFloor& floor = group.floor;
     floor.runs = std::ssize(group.spectra);
+    floor.missing = missing[floor.level];
     std::vector<double> values(group.spectra.size());
     for (std::size_t f = 0; f < floor.frequencies.size(); ++f) {
       std::ranges::transform(group.spectra, values.begin(), [&](const StudySpectrum* spectrum) { return spectrum->values[f]; });

@@ -55,6 +55,8 @@ struct StudyFloor {
   std::string floor;
   double damping = 0, level = 0;  // intensity, of clouds the factor
   long runs = 0;
+  long lost = 0;                                   // of these, runs that lost the structure: their spectra are those up to there
+  long missing = 0;                                // runs without an outcome, which have no spectra
   std::vector<double> frequencies, p16, p50, p84;  // Hz, m/s2
 };
 std::vector<StudyFloor> floor_percentiles(const StudyCase& study, const std::vector<StudyCurve>& curves);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -95,6 +96,86 @@ StudyResult opened(double opening, StudyOutcome outcome = StudyOutcome::complete
   result.outcome = outcome;
   result.numbers = {{"max_opening", "soil", opening}};
   return result;
+}
+
+/// Spectra of a lost structure end with it, and failed runs have none: percentiles say over how many runs they are.
+TEST(StudyFit, FloorPercentilesSayWhatTheyAreMadeOf) {
+  std::string plan = "samples = 5\n" + std::string(searching) + variable;
+  plan.replace(plan.find("type = \"ida\""), plan.find("[[record]]") - plan.find("type = \"ida\""), "type = \"stripes\"\nlevels = [1.0]\n");
+  const StudyCase study = study_of(plan);
+  std::vector<StudyCurve> curves = study_curves(study);
+  std::map<std::string, StudyResult> results;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const StudyPoint point = curves[i].wanted([](const std::string&) -> const StudyResult* { return nullptr; }).front();
+    StudyResult& result = results[point.id] = opened(0.001, i == 3  ? StudyOutcome::overturned
+                                                            : i > 7 ? StudyOutcome::failed
+                                                                    : StudyOutcome::completed);
+    if (says_something(result.outcome)) result.spectra = {{"top", 0.05, {1}, {static_cast<double>(10 - i)}}};
+    curves[i].wanted([&](const std::string& id) { return &results.at(id); });
+  }
+  const std::vector<StudyFloor> floors = floor_percentiles(study, curves);
+  ASSERT_EQ(floors.size(), 1U);
+  EXPECT_EQ(floors[0].runs, 8);
+  EXPECT_EQ(floors[0].lost, 1);
+  EXPECT_EQ(floors[0].missing, 2);
+  EXPECT_NEAR(floors[0].p16[0], 3 + 7 * 0.16, 1e-12);  // straight between 3, 4 ... 10
+  EXPECT_NEAR(floors[0].p50[0], 6.5, 1e-12);
+}
+
+/// The demand is that of the intensity times the root of the stiffness, but for the stiffest sample, which stays closed at the lowest one:
+/// what is left of it must not be compared with all demands of the others.
+TEST(StudyFit, TornadoComparesTheSameMotionsAndIntensities) {
+  std::string plan = "samples = 3\n" + std::string(searching) + variable;
+  plan.replace(plan.find("type = \"ida\""), plan.find("[[record]]") - plan.find("type = \"ida\""),
+               "type = \"stripes\"\nlevels = [0.1, 1.0, 2.0]\n");
+  const StudyCase study = study_of(plan);
+  std::vector<double> stiffness;
+  for (const auto& sample : study.samples) stiffness.push_back(sample.values[0]);
+  const auto [soft, stiff] = std::ranges::minmax(stiffness);
+  std::vector<StudyCurve> curves = study_curves(study);
+  std::map<std::string, StudyResult> results;
+  for (StudyCurve& curve : curves) {
+    for (const StudyPoint& point : curve.wanted([](const std::string&) -> const StudyResult* { return nullptr; })) {
+      const double k = stiffness[curve.sample()];
+      results[point.id] = opened(k == stiff && point.intensity < 0.5 ? 0 : 1e-3 * point.intensity * std::sqrt(k));
+    }
+    curve.wanted([&](const std::string& id) { return &results.at(id); });
+  }
+  const StudyLimitFit fit = fit_limit(study, curves, 0);
+  ASSERT_EQ(fit.tornado.size(), 1U);
+  EXPECT_NEAR(fit.tornado[0].low, 1e-3 * std::sqrt(2.0) * std::sqrt(soft), 1e-15);  // of the intensities 1 and 2
+  EXPECT_NEAR(fit.tornado[0].high, 1e-3 * std::sqrt(2.0) * std::sqrt(stiff), 1e-15);
+}
+
+/// Ten demands, and two runs that failed below the limit between them: with the demands of the latter at least and at most the limit, the
+/// maximum of the censored likelihood was found with Nelder and Mead's method (SciPy).
+TEST(StudyFit, RunsOfUnknownOutcomeCountBothWaysInACloud) {
+  std::string plan = searching;
+  plan.replace(plan.find("measure = \"pga\""), 15, "measure = \"factor\"");
+  plan.replace(plan.find("type = \"ida\""), plan.find("[[record]]") - plan.find("type = \"ida\""),
+               "type = \"cloud\"\nfactors = [0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.41, 0.45, 0.5, 0.6, 0.8, 1.0]\n");
+  plan.erase(plan.find("[[motion]]\nname = \"other\""), plan.find("[[limit]]") - plan.find("[[motion]]\nname = \"other\""));
+  const StudyCase study = study_of(plan);
+  std::vector<StudyCurve> curves = study_curves(study);
+  ASSERT_EQ(curves.size(), 1U);
+  const std::map<double, double> demands{{.1, .0021}, {.15, .0028}, {.2, .0047}, {.25, .0049}, {.3, .0072},
+                                         {.4, .0083}, {.5, .0125},  {.6, .0131}, {.8, .021},   {1., .0236}};
+  std::map<std::string, StudyResult> results;
+  for (const StudyPoint& point : curves[0].wanted([](const std::string&) -> const StudyResult* { return nullptr; })) {
+    const auto known = demands.find(point.intensity);
+    results[point.id] = known != demands.end() ? opened(known->second) : opened(0.001, StudyOutcome::failed);
+  }
+  ASSERT_EQ(results.size(), 12U);
+  EXPECT_TRUE(curves[0].wanted([&](const std::string& id) { return &results.at(id); }).empty());
+  const StudyLimitFit fit = fit_limit(study, curves, 0);
+  EXPECT_EQ(fit.unknown, 2);
+  const Fragility &middle = std::get<Fragility>(fit.fit.middle), &exceeded = std::get<Fragility>(fit.fit.exceeded),
+                  &survived = std::get<Fragility>(fit.fit.survived);
+  EXPECT_NEAR(middle.theta(), 0.43853218, 1e-8);
+  EXPECT_NEAR(exceeded.theta(), 0.43182863, 1e-8);
+  EXPECT_NEAR(exceeded.beta(), 0.07941981, 1e-8);
+  EXPECT_NEAR(survived.theta(), 0.44316412, 1e-8);
+  EXPECT_NEAR(survived.beta(), 0.07684176, 1e-8);
 }
 
 TEST(StudyCurve, ASearchFindsTheIntensityOfTheLimit) {

@@ -288,6 +288,8 @@ void write_floor(ResultWriter& out, const StudyFloor& floor) {
   out.number("damping", floor.damping, "1", "damping ratio of the equipment");
   out.number("level", floor.level, intensity_unit, "intensity; of a cloud the factor on the motions");
   out.count("runs", floor.runs, "runs");
+  out.count("lost", floor.lost, "of these, runs that overturned or separated: their spectra are those up to there");
+  out.count("missing", floor.missing, "further runs, without an outcome: they have no spectra");
   out.numbers("frequencies", floor.frequencies, "Hz", "frequencies");
   out.numbers("p16", floor.p16, "m/s2", "pseudo-acceleration that 16 % of the runs stay below");
   out.numbers("p50", floor.p50, "m/s2", "median");

@@ -36,6 +36,8 @@ StudyLimit limit_of(const Values& table) {
   const std::string_view name = limit.quantity->name;
   if (!table.has("limit")) fail(table, "", fmt::format("limit, of {}", name), "none");
   limit.limit = limit_asked(table, *limit.quantity);
+  if (limit.limit < 0 && !limit.quantity->at_least && !name.starts_with("change_of"))
+    fail(table, "limit", "a number >= 0: the size of the quantity counts", table.text("limit"));
   if (table.has("of")) {
     if (!limit.quantity->of_interface && !limit.quantity->of_beam)
       fail(table, "of", fmt::format("nothing: {} belongs to the whole run", name), "\"" + table.text("of") + "\"");
@@ -149,9 +151,13 @@ StudyPlan study_plan(const Raw& raw) {
   }
   if (plan.limits.empty()) plan.limits.push_back({"overturned", "", nullptr, "", 0});
   if (plan.method.type == StudyMethod::Type::cloud)
-    for (const StudyLimit& limit : plan.limits)
+    for (const StudyLimit& limit : plan.limits) {
       if (!limit.quantity)
         fail(limit.given.table ? *limit.given.table : root, "", "limits with a quantity: a cloud is regressed on it", "none");
+      if (limit.quantity->at_least)
+        fail(*limit.given.table, "quantity", "a number that grows with the intensity: a cloud is regressed on it",
+             fmt::format("{}, which has a smallest value", limit.quantity->name));
+    }
   for (const Values& table : root.tables("motions")) plan.many_motions.push_back(many_motions_of(table));
   plan.site = site_of(root);
   plan.floor_spectra = root.flag("floor_spectra");
