@@ -34,6 +34,8 @@ class StudyPlans(CliTest):
         for found, message in [
             ("interface[18446744073709551616].law.K_n", "expected paths of numbers of the case"),  # beyond the largest index
             ("interface[1].law.K_n", "expected paths of numbers of the case"),
+            ("interface[0].law.Kn", '(did you mean "interface[0].law.K_n"?)'),
+            ("interfaces[0].law.K_n", '(did you mean "interface[0].law.K_n"?)'),
             ("load[0].force[0]", "expected numbers that are not 0, for a factor"),
             (f'{path}", "{path}', "expected numbers that are set once"),
         ]:

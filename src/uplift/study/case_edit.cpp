@@ -65,6 +65,18 @@ const Field* field_of(const Values& table, std::string_view key) {
   return found == fields->end() ? nullptr : &*found;
 }
 
+/// The path with the nearest key of the table in place of `key`, which stands before `rest`; empty where none is near.
+std::string with_nearest_key(const Values& table, std::string_view whole, std::string_view key, std::string_view rest) {
+  std::vector<std::string> keys;
+  for (const auto& [name, item] : table.items())  // not those of words and flags
+    if (std::holds_alternative<double>(item.data) || std::holds_alternative<std::vector<double>>(item.data) ||
+        std::holds_alternative<std::vector<Values>>(item.data))
+      keys.emplace_back(name);
+  const std::string near = nearest_name(key, keys);
+  if (near.empty()) return "";
+  return std::string(whole.substr(0, whole.size() - rest.size() - key.size())) + near + std::string(rest);
+}
+
 /// The table of several that the path goes into.
 const Values* table_at(const std::vector<Values>& tables, const Field& field, std::string_view& path) {
   if (field.kind == Kind::named) {
@@ -78,13 +90,17 @@ const Values* table_at(const std::vector<Values>& tables, const Field& field, st
 
 }  // namespace
 
-std::optional<NumberAt> number_at(const Values& root, std::string_view path) {
+std::optional<NumberAt> number_at(const Values& root, std::string_view path, std::string* nearest) {
+  const std::string_view whole = path;
   const Values* table = &root;
   std::string_view key = next_of(path);
   while (true) {
     const auto found = table->items().find(key);
     const Field* field = field_of(*table, key);
-    if (found == table->items().end() || field == nullptr) return std::nullopt;
+    if (found == table->items().end() || field == nullptr) {
+      if (nearest != nullptr) *nearest = with_nearest_key(*table, whole, key, path);
+      return std::nullopt;
+    }
     if (const auto* number = std::get_if<double>(&found->second.data))
       return path.empty() ? std::optional(NumberAt{*number, field}) : std::nullopt;
     if (const auto* numbers = std::get_if<std::vector<double>>(&found->second.data)) {

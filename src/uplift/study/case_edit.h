@@ -26,6 +26,7 @@ struct NumberAt {
   const Field* field = nullptr;
 };
 /// The number at a path of the form of CaseEdit; nothing where there is none. Tables under free keys are found by key: "nodes.top[1]".
-std::optional<NumberAt> number_at(const Values& root, std::string_view path);
+/// `nearest` becomes the path with the nearest name in place of a key that its table does not have; empty where none is near.
+std::optional<NumberAt> number_at(const Values& root, std::string_view path, std::string* nearest = nullptr);
 
 }  // namespace uplift

@@ -102,8 +102,9 @@ void resolve_variables(StudyCase& study) {
   std::set<std::string> known;
   for (StudyVariable& variable : study.plan.variables) {
     for (const std::string& path : variable.paths) {
-      const std::optional<NumberAt> number = number_at(study.read.values, path);
-      if (!number) fail(variable.given, "paths", "paths of numbers of the case, as \"interface[0].law.K_n\"", in_quotes(path));
+      std::string nearest;
+      const std::optional<NumberAt> number = number_at(study.read.values, path, &nearest);
+      if (!number) fail(variable.given, "paths", "paths of numbers of the case, as \"interface[0].law.K_n\"", in_quotes(path), nearest);
       if (path.starts_with("record") || path.starts_with("compare"))
         fail(variable.given, "paths", "no number of a record: a study has motions", in_quotes(path));
       if (variable.is_factor && number->value == 0) fail(variable.given, "paths", "numbers that are not 0, for a factor", in_quotes(path));

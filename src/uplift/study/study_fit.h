@@ -38,7 +38,7 @@ struct StudyLimitFit {
   long without_demand = 0;                       // runs of a cloud whose demand is 0, which has no logarithm: not in the regression
   std::optional<CloudFit> regression;            // of a cloud
   BothWays fit{Refused{"there are no runs"}, Refused{"there are no runs"}, Refused{"there are no runs"}};
-  OrRefused<TwoWayLayout> layout = Refused{"it takes two samples and two motions at least, crossed"};
+  OrRefused<TwoWayLayout> layout = Refused{"it is of searches, with two samples and two motions at least, crossed"};
   OrRefused<SharedError> shared = Refused{"it is of stripes and clouds"};  // of the fit in the middle
   /// Of the median of the fit in the middle, which exists. Curves share their motions and their samples: where the layout is known, its
   /// interval; of stripes and clouds at least that of the shared error; else all curves count as independent.
