@@ -170,12 +170,6 @@ struct FilterMemory {
   // of a point with rotations filtered increments [m, rad] and, in its first row, d_f . C d_f [J]. In the state that a march hands out.
   Vector opening, coefficient;
   double stored = 0;  // J, by the filters of the interfaces
-
-  void swap(FilterMemory& other) noexcept {
-    std::swap(gain, other.gain), std::swap(step, other.step), std::swap(stored, other.stored);
-    displacement.swap(other.displacement), velocity.swap(other.velocity);
-    opening.swap(other.opening), coefficient.swap(other.coefficient);
-  }
 };
 
 /// Everything that changes: a value. Copy to go back, move to accept.
@@ -191,16 +185,6 @@ struct State {
   double load_factor = 1;  // share of the dead loads and prescribed motions that act; below 1 only in the first static stage
 
   MotionInstant instant() const { return {time, load_factor}; }
-
-  /// Exchanges the numbers without copying them.
-  void swap(State& other) noexcept {
-    std::swap(time, other.time);
-    displacement.swap(other.displacement), velocity.swap(other.velocity), acceleration.swap(other.acceleration);
-    opening.swap(other.opening), force.swap(other.force), mean_force.swap(other.mean_force);
-    history.swap(other.history), bulk_history.swap(other.bulk_history);
-    filter.swap(other.filter);
-    std::swap(load_factor, other.load_factor);
-  }
 };
 
 }  // namespace uplift
