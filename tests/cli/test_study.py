@@ -177,10 +177,19 @@ class Study(StudyTest):
         self.assertEqual(limit["regression"]["without_demand"], 4)
         points = [(math.log(run["intensity"]), math.log(run["demands"][0])) for curve in study["curves"] for run in curve["runs"] if run["demands"][0]]
         self.assertEqual(len(points), 8)
-        x, y = (sum(point[i] for point in points) / 8 for i in (0, 1))
-        slope = sum((a - x) * (b - y) for a, b in points) / sum((a - x) ** 2 for a, _ in points)
-        self.assertAlmostEqual(limit["regression"]["b"], slope, delta=1e-9)
-        self.assertAlmostEqual(limit["fit"]["theta"], math.exp((math.log(1e-3) - y + slope * x) / slope), delta=1e-9)
+        closed = [math.log(run["intensity"]) for curve in study["curves"] for run in curve["runs"] if not run["demands"][0]]
+
+        def log_likelihood(a, b, sigma):
+            """Demands on the line, and four that are at most the limit."""
+            exact = sum(-math.log(sigma) - ((y - a - b * x) / sigma) ** 2 / 2 for x, y in points)
+            return exact + sum(math.log(math.erfc(-(math.log(1e-3) - a - b * x) / sigma / math.sqrt(2)) / 2) for x in closed)
+
+        fit = [limit["regression"][key] for key in ("a", "b", "sigma")]
+        for i in range(3):
+            ahead, back = (log_likelihood(*(value + (step if j == i else 0) for j, value in enumerate(fit))) for step in (1e-5, -1e-5))
+            self.assertAlmostEqual((ahead - back) / 2e-5, 0, delta=1e-5)
+            self.assertGreater(log_likelihood(*fit), max(ahead, back))
+        self.assertAlmostEqual(limit["fit"]["theta"], math.exp((math.log(1e-3) - fit[0]) / fit[1]), delta=1e-9)
 
     def test_a_limit_of_a_number_that_no_run_has(self):
         # without friction there is no safety against sliding: that no run falls below the limit says nothing

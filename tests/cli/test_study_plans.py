@@ -76,6 +76,9 @@ class StudyPlans(CliTest):
         # regressed on a safety, the curve would be the probability that the structure is safe
         cloud = IDA.replace('type = "ida"\nstart = 0.1\nlargest = 20', 'type = "cloud"')
         self.refused(cloud.replace('"max_opening"\nlimit = "1 mm"', '"min_overturning_safety"\nlimit = 1.1'), "quantity", "expected a number that grows with the intensity")
+        # a moment that is less by 30 % is no demand of 0.3
+        self.refused(cloud.replace('"max_opening"\nlimit = "1 mm"', '"change_of_moment"\nlimit = 0.1'), "quantity", "expected a number whose size counts")
+        self.refused(cloud.replace('"1 mm"', '"0 mm"'), "limit =", "expected a number > 0")
 
     def test_percentiles_of_floors_need_common_levels(self):
         self.refused("floor_spectra = true\n" + IDA, "floor_spectra", "expected stripes or cloud as the method")

@@ -74,6 +74,7 @@ export interface Limit {
   risk?: { rate: Maybe; reason: string; share_below: Maybe; share_above: Maybe; composite: Maybe; unknown_survived: Maybe; unknown_exceeded: Maybe };
   fractiles?: { demands: number[]; p16: Maybe[]; p50: Maybe[]; p84: Maybe[] };
   tornado: { variable: string; low: number; high: number }[];
+  tornado_basis: { samples: number; responses: number; reason: string };
 }
 
 export interface StudyRun {

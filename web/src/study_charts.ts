@@ -132,7 +132,7 @@ function ida_chart(study: Study, limit: Limit, k: number): Chart[] {
 // ---- stripes and clouds ----
 
 /** A demand of zero has no logarithm. */
-const without_demand = (count: number): string => (count === 0 ? "" : ` ${count === 1 ? "One run whose demand is zero is" : `${count} runs whose demand is zero are`} left out.`);
+const without_demand = (count: number): string => (count === 0 ? "" : ` ${count === 1 ? "One run whose demand is zero counts" : `${count} runs whose demand is zero count`} as at most the limit.`);
 
 const not_drawn = (count: number): string => (count === 0 ? "" : ` ${count === 1 ? "One run whose demand is zero is" : `${count} runs whose demand is zero are`} not drawn; percentiles count ${count === 1 ? "it" : "them"}.`);
 
@@ -167,6 +167,7 @@ function points_chart(study: Study, limit: Limit, k: number): Chart[] {
 
 /** What the percentiles of an intensity are made of: "8 at 0.20 g, of which 2 lost the structure, and 1 without an outcome left out". */
 function floor_runs({ runs, lost, missing }: StudyFloor, at: string): string {
+  if (runs === 0) return `none at ${at}, all ${missing} without an outcome`;
   return `${runs} at ${at}${lost > 0 ? `, of which ${lost} lost the structure` : ""}${missing > 0 ? `, and ${missing} without an outcome left out` : ""}`;
 }
 
@@ -181,7 +182,7 @@ function floor_charts(study: Study): Chart[] {
     id: id_of("floor", k), section: "floors", title, origin: ORIGIN,
     caption: `Median and range from 16 % to 84 % over the runs of each intensity (${levels.map((each) => floor_runs(each, named(each))).join("; ")}).${levels.some(({ lost }) => lost > 0) ? " Spectra of runs that lost the structure are those up to there, lower bounds of what comes." : ""}`,
     x: { label: "Frequency", unit: "Hz", log: true }, y: { label: "Pseudo-acceleration", unit: "m/s2", log: true },
-    series: levels.flatMap((each): Series[] => [
+    series: levels.filter(({ runs }) => runs > 0).flatMap((each): Series[] => [
       { label: `${named(each)}, median`, x: each.frequencies, y: each.p50, style: "line", group: named(each) },
       { label: "16 to 84 %", x: [...each.frequencies, ...[...each.frequencies].reverse()], y: [...each.p84, ...[...each.p16].reverse()], style: "band", group: named(each) },
     ]),

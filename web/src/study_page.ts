@@ -101,8 +101,9 @@ const BARS = 260;
 /** Two bars for each variable, its smallest values above its largest, from the median or the mean of all. */
 function tornado_card(study: Study, limit: Limit): HTMLElement | null {
   const all = limit.tornado.filter(({ low, high }) => low > 0 && high > 0);
-  if (all.length === 0) return null;
   const found = searches(study);
+  const { samples, responses, reason } = limit.tornado_basis;
+  if (all.length === 0) return reason === "" ? null : h("figure", { class: "card tornado" }, h("header", {}, h("h3", {}, limit.name)), h("figcaption", {}, `Not given: ${reason}.`));
   const text = (value: number): string => (found ? intensity_text(study, value) : format_quantity(value, limit.unit));
   const centre = Math.exp(all.reduce((sum, { low, high }) => sum + Math.log(low * high) / 2, 0) / all.length);
   const reach = Math.max(...all.flatMap(({ low, high }) => [low, high]).map((v) => Math.abs(v - centre)), 0.02 * centre);
@@ -128,7 +129,7 @@ function tornado_card(study: Study, limit: Limit): HTMLElement | null {
       ...rows, s("path", { class: "tornado-axis", d: `M${middle} 2V${bottom}` }), s("text", { x: middle, y: bottom + 16, "text-anchor": "middle" }, text(centre))),
     h("div", { class: "spectrum-keys" },
       h("span", {}, h("i", { class: "dot tornado-low" }), "smallest third of the values"), h("span", {}, h("i", { class: "dot tornado-high" }), "largest third")),
-    h("figcaption", {}, `Geometric means of the ${what} over the samples with the smallest and with the largest third of the values of each variable${study.pairing === "crossed" ? ", under the motions for which all samples have one" : ""}, and changes from the middle of these means: ${changes}.`));
+    h("figcaption", {}, `Geometric means of the ${what} over the samples with the smallest and with the largest third of the values of each variable${study.pairing === "crossed" ? `, compared under the same ${found ? "motions" : "motions and intensities"} by the effects of both (least squares)` : ""}, and changes from the middle of these means: ${changes}. They rest on ${responses} ${found ? "capacities" : "completed runs"} of ${samples === study.samples ? "all" : `${samples} of`} ${study.samples} samples.`));
 }
 
 /** One drawing for each limit; none without variables. */

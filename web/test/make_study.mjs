@@ -50,7 +50,7 @@ function limit_of(changes) {
   return {
     name: "uplift of 30 mm", quantity: "max_opening", label: "largest gap", of: "", unit: "m", limit: LIMIT, at_least: false, source: "client", survived: 0, exceeded: 0, unknown: 0,
     capacities: [], stripes: [], confidence: 0.9, fit: refused("there are no runs"), unknown_survived: refused("there are no runs"), unknown_exceeded: refused("there are no runs"),
-    dispersion: { known: false, reason: "it takes two samples" }, tornado: [], ...changes,
+    dispersion: { known: false, reason: "it takes two samples" }, tornado: [], tornado_basis: { samples: 0, responses: 0, reason: "" }, ...changes,
   };
 }
 
@@ -96,6 +96,7 @@ export function ida_study(count = 12, samples = 5) {
     name: "rotation of 2 mrad", quantity: "residual_rotation", label: "residual rotation of the base", unit: "rad", limit: 2e-3, ...counts,
     fit: full_fit(0.9, 0.5, 0.1), unknown_survived: fitted(0.9, 0.5), unknown_exceeded: fitted(0.9, 0.5), ...site({ theta: 0.9, beta: 0.5 }),
     fractiles: { demands: [5e-4, 1e-3, 2e-3], p16: [0.2, 0.4, null], p50: [0.3, null, null], p84: [null, null, null] },
+    tornado_basis: { samples: 0, responses: 0, reason: "it takes three samples at least" },
     capacities: capacities.map((each, i) => ({ ...each, found: i > 1, capacity: { known: "at_least", intensity: 6 } })),
   });
   for (const curve of curves) for (const each of curve.runs) (each.states.push("survived"), each.demands.push(each.demands[0] / 40));
@@ -111,6 +112,7 @@ export function ida_study(count = 12, samples = 5) {
         ...counts, capacities, fit, ...site(fit), fractiles: { demands, p16, p50, p84 }, unknown_survived: fitted(THETA, BETA), unknown_exceeded: fitted(THETA, BETA),
         dispersion: { known: true, reason: "", median: THETA, beta_r: BETA_R, beta_u: BETA_U, hclpf: THETA * Math.exp(-1.65 * (BETA_R + BETA_U)) },
         tornado: [{ variable: "soil stiffness", low: 0.8 * THETA, high: 1.25 * THETA }, { variable: "friction", low: 1.02 * THETA, high: THETA / 1.02 }],
+        tornado_basis: { samples: samples - 1, responses: 46, reason: "" },
       }),
       rotation,
     ],
@@ -145,7 +147,7 @@ export function stripes_study() {
       { id: "a1", motion: "m_1", sample: 0, intensity: 0.45, factor: 1.5, outcome: "failed", reason: "step 812 did not converge", case: "runs/a1/case.resolved.toml", replay: "runs/a1/problem.json" },
       { id: "a2", motion: "m_2", sample: 0, intensity: 0.45, factor: 1.5, outcome: "timeout", reason: "longer than 10 min", case: "runs/a2/case.resolved.toml", replay: "" },
     ],
-    floor_spectra: [0.2, 0.45, 1].map((level) => ({ floor: "deck", damping: 0.05, level, runs: level === 0.45 ? 8 : 10, lost: level === 1 ? 3 : 0, missing: level === 0.45 ? 2 : 0, frequencies, p16: spectrum(level, 0.8), p50: spectrum(level, 1), p84: spectrum(level, 1.25) })),
+    floor_spectra: [0.2, 0.45, 1, 2].map((level) => level === 2 ? { floor: "deck", damping: 0.05, level, runs: 0, lost: 0, missing: 10, frequencies: [], p16: [], p50: [], p84: [] } : ({ floor: "deck", damping: 0.05, level, runs: level === 0.45 ? 8 : 10, lost: level === 1 ? 3 : 0, missing: level === 0.45 ? 2 : 0, frequencies, p16: spectrum(level, 0.8), p50: spectrum(level, 1), p84: spectrum(level, 1.25) })),
   });
 }
 

@@ -79,6 +79,9 @@ async function check_ida(browser, check, shot) {
     const bars = await page.locator(".tornado").first().locator("rect").evaluateAll((list) => list.map((e) => Number(e.getAttribute("width"))));
     check.equal(bars.length, 4, "the tornado has two bars for each variable");
     check.ok(bars[0] > 5 * bars[2] && near(bars[0] / bars[1], (1 - 0.8) / (1.25 - 1), 1e-3), "as long as the variables move the capacity", bars.join());
+    const captions = await page.locator(".tornado figcaption").allInnerTexts();
+    check.ok(captions[0].includes("under the same motions by the effects of both") && captions[0].endsWith("They rest on 46 capacities of 4 of 5 samples."), "it says on what it rests", captions[0]);
+    check.equal(captions[1], "Not given: it takes three samples at least.", "and why another limit has none");
     check.ok((await page.locator("#case").innerText()).includes("Plan of the study"), "the plan can be read");
     check.ok((await page.locator("#choices").innerText()).includes("factor, lognormal, median 1, β 0.4"), "the variables are stated");
   }, shot && { folder: shot, name: "study_ida" });
@@ -105,7 +108,7 @@ async function check_stripes(browser, check, shot) {
     const largest = demands.series[0].y.filter((_, i) => demands.series[0].x[i] === 0.2).sort((a, b) => b - a);
     check.ok(low === null && middle === null && near(high, largest[2] + 0.56 * (largest[1] - largest[2]), 1e-15), "percentiles are those of all runs", `${low} ${middle} ${high}`);
     check.equal(chart_of(report, "floor_1").series.map((each) => each.style).join(), "line,band,line,band,line,band", "floor spectra show the median and the range of each intensity");
-    check.ok(chart_of(report, "floor_1").caption.replaceAll("\u00a0", " ").includes("(10 at 0.200 g; 8 at 0.450 g, and 2 without an outcome left out; 10 at 1.00 g, of which 3 lost the structure)."), "with the number of runs", chart_of(report, "floor_1").caption);
+    check.ok(chart_of(report, "floor_1").caption.replaceAll("\u00a0", " ").includes("(10 at 0.200 g; 8 at 0.450 g, and 2 without an outcome left out; 10 at 1.00 g, of which 3 lost the structure; none at 2.00 g, all 10 without an outcome)."), "with the number of runs", chart_of(report, "floor_1").caption);
     check.equal(await page.locator(".chip-failed").count(), 2, "failures are marked");
   }, shot && { folder: shot, name: "study_stripes" });
 }
@@ -117,7 +120,7 @@ async function check_cloud(browser, check) {
     const line = chart_of(report, "demand_1").series.find((each) => each.label === "regression");
     const points = chart_of(report, "demand_1").series[0];
     check.ok(points.x.every((x, i) => near(Math.log(points.y[i]), -4 + 1.2 * Math.log(x), 1e-12)) && near(Math.log(line.y[41] / line.y[0]) / Math.log(line.x[41] / line.x[0]), 1.2, 1e-9), "the regression goes through the demands");
-    check.ok(chart_of(report, "demand_1").caption.endsWith("2 runs whose demand is zero are left out."), "what has no logarithm is stated", chart_of(report, "demand_1").caption);
+    check.ok(chart_of(report, "demand_1").caption.endsWith("2 runs whose demand is zero count as at most the limit."), "what has no logarithm is stated", chart_of(report, "demand_1").caption);
     check.equal(await page.locator(".tornado").count(), 0, "no tornado without variables");
   });
 }

@@ -92,23 +92,23 @@ OrRefused<CloudFit> by_least_squares(FragilityLikelihood likelihood, const Line&
                   std::move(likelihood).with(log_theta, width * ratio, width * of_t, width * of_ratio, covariance / (of_t * of_ratio))};
 }
 
-OrRefused<CloudFit> by_likelihood(FragilityLikelihood likelihood, const Line& start, CloudData data) {
+OrRefused<CloudFit> by_likelihood(FragilityLikelihood likelihood, const Line& start, CloudData data, double scatter) {
   const double precision = std::sqrt(static_cast<double>(likelihood.terms.size()) / start.residual);
   const auto found = likelihood.maximise(Vec3(start.level, start.slope, 1) * precision, likelihood.all_directions());
   if (!found) return Refused{"the maximum of the likelihood was not found"};
   likelihood.best = *found;
   const Vec3 p = found->at;
   if (!(p[1] > 0)) return Refused{"the demand does not grow with the intensity"};
-  unstandardise(likelihood, {p[0] / p[2], p[1] / p[2]}, 1 / p[2], data);
+  unstandardise(likelihood, {p[0] / p[2], p[1] / p[2]}, scatter / p[2], data);
   likelihood.data = data;
-  auto fitted = std::move(likelihood).fragility();
+  auto fitted = std::move(likelihood).fragility(scatter);
   if (const auto* refused = std::get_if<Refused>(&fitted)) return *refused;
   return CloudFit{data.a, data.b, data.sigma, std::get<Fragility>(std::move(fitted))};
 }
 
 }  // namespace
 
-OrRefused<CloudFit> fit_cloud(std::span<const CloudPoint> points, double threshold) {
+OrRefused<CloudFit> fit_cloud(std::span<const CloudPoint> points, double threshold, double scatter) {
   if (std::string reason = invalid(points, threshold); !reason.empty()) return Refused{std::move(reason)};
   CloudData data{{points.begin(), points.end()}, threshold};
   std::vector<FragilityLikelihood::Term> exact;
@@ -117,7 +117,7 @@ OrRefused<CloudFit> fit_cloud(std::span<const CloudPoint> points, double thresho
   if (std::string reason = no_line(exact, of_exact); !reason.empty()) return Refused{std::move(reason)};
   if (exact.size() == points.size()) return by_least_squares(std::move(likelihood), of_exact, std::move(data));
   const Line of_all = least_squares(likelihood.terms);
-  return by_likelihood(std::move(likelihood), of_all.residual > of_exact.residual ? of_all : of_exact, std::move(data));
+  return by_likelihood(std::move(likelihood), of_all.residual > of_exact.residual ? of_all : of_exact, std::move(data), scatter);
 }
 
 }  // namespace uplift

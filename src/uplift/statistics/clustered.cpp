@@ -85,8 +85,10 @@ OrRefused<SharedError> shared_error_of_cloud(const CloudFit& fit, double limit, 
   std::vector<Term> terms;
   for (const SharedRun& run : runs) {
     const double x = std::log(run.im) - theta, z = (std::log(run.demand) - fit.a - fit.b * std::log(run.im)) / fit.sigma;
-    const double hazard = normal_tail(z).hazard;
-    terms.push_back(run.censored ? Term{x, hazard, hazard * (hazard - z)} : Term{x, z, 1});
+    const double hazard = normal_tail(run.at_most ? -z : z).hazard;
+    terms.push_back(run.at_most    ? Term{x, -hazard, hazard * (hazard + z)}
+                    : run.censored ? Term{x, hazard, hazard * (hazard - z)}
+                                   : Term{x, z, 1});
   }
   return shared_error(terms, runs, -fit.sigma / fit.b);
 }

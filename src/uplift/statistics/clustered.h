@@ -14,6 +14,7 @@ struct SharedRun {
   double demand = 0;            // of a cloud, > 0
   bool censored = false;        // of a cloud: the demand is a lower bound
   long motion = 0, sample = 0;  // from 0 on
+  bool at_most = false;         // of a cloud: the demand is an upper bound
 };
 
 /// Standard error of ln theta where the runs of one motion, and those of one sample, depend on each other.

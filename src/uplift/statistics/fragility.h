@@ -106,13 +106,15 @@ struct CloudPoint {
 
 /// ln demand = a + b ln im + sigma * (standard normal).
 struct CloudFit {
-  double a = 0, b = 0, sigma = 0;  // sigma with n - 2; with censored demands that of the maximum of the likelihood
+  double a = 0, b = 0, sigma = 0;  // sigma with n - 2; with censored demands that of the maximum of the likelihood, times `scatter`
   Fragility fragility;             // theta = exp((ln threshold - a)/b), beta = sigma/b
 };
 
 /// Cloud analysis: regression of demands, as maximum of a censored likelihood where demands are bounds. Refused with fewer than
-/// three exact demands, with one intensity only, where the demand does not grow with im, or without any scatter.
-OrRefused<CloudFit> fit_cloud(std::span<const CloudPoint>, double threshold);
+/// three exact demands, with one intensity only, where the demand does not grow with im, or without any scatter. `scatter`: factor on
+/// sigma, beta and its standard error of a maximum of the likelihood, so that it compares with one of least squares; the intervals of the
+/// fit are those of the likelihood all the same.
+OrRefused<CloudFit> fit_cloud(std::span<const CloudPoint>, double threshold, double scatter = 1);
 
 /// A fit with every run without outcome counted as survived and as exceeded, and the figure between the two where it may be given.
 struct BothWays {

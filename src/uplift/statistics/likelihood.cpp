@@ -170,7 +170,7 @@ Fragility FragilityLikelihood::with(double log_theta, double beta, double se_log
 }
 
 // theta and beta are functions of a and b; their covariance follows from that of p, the inverse of the curvature.
-OrRefused<Fragility> FragilityLikelihood::fragility() && {
+OrRefused<Fragility> FragilityLikelihood::fragility(double scatter) && {
   const double a = best.at[0], b = best.at[1];
   if (!(b > 0)) return Refused{"the fraction of exceedances does not grow with the intensity"};
   const double t = -a / b, log_theta = centre + width * t, beta = width / b;
@@ -184,7 +184,7 @@ OrRefused<Fragility> FragilityLikelihood::fragility() && {
   const double variance = of_log_theta.dot(to_log_theta), of_scatter = of_beta.dot(to_beta);
   if (!(variance > 0 && of_scatter > 0)) return Refused{"the standard errors cannot be computed: the information matrix is singular"};
   const double correlation = std::clamp(of_log_theta.dot(to_beta) / std::sqrt(variance * of_scatter), -1.0, 1.0);
-  return std::move(*this).with(log_theta, beta, std::sqrt(variance), std::sqrt(of_scatter), correlation);
+  return std::move(*this).with(log_theta, scatter * beta, std::sqrt(variance), scatter * std::sqrt(of_scatter), correlation);
 }
 
 double Fragility::probability(double im) const {

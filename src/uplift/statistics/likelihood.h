@@ -61,7 +61,7 @@ struct FragilityLikelihood {
   /// Twice the loss of ln L that bounds an interval of the confidence `level`.
   double cutoff(double level) const;
   /// theta, beta, standard errors from `best`.
-  OrRefused<Fragility> fragility() &&;
+  OrRefused<Fragility> fragility(double scatter = 1) &&;  // `scatter`: factor on beta and its standard error
   /// The same with other numbers than those of `best`, in units of ln im.
   Fragility with(double log_theta, double beta, double se_log_theta, double se_beta, double correlation) &&;
 };

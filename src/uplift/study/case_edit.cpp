@@ -65,8 +65,9 @@ const Field* field_of(const Values& table, std::string_view key) {
   return found == fields->end() ? nullptr : &*found;
 }
 
-/// The path with the nearest key of the table in place of `key`, which stands before `rest`; empty where none is near.
-std::string with_nearest_key(const Values& table, std::string_view whole, std::string_view key, std::string_view rest) {
+/// The path with the nearest key of the table in place of `key`, which stands before `rest`, if it is written there; empty where none is
+/// near.
+std::string with_nearest_key(const Values& table, std::string_view whole, std::string_view key, bool written, std::string_view rest) {
   std::vector<std::string> keys;
   for (const auto& [name, item] : table.items())  // not those of words and flags
     if (std::holds_alternative<double>(item.data) || std::holds_alternative<std::vector<double>>(item.data) ||
@@ -74,7 +75,8 @@ std::string with_nearest_key(const Values& table, std::string_view whole, std::s
       keys.emplace_back(name);
   const std::string near = nearest_name(key, keys);
   if (near.empty()) return "";
-  return std::string(whole.substr(0, whole.size() - rest.size() - key.size())) + near + std::string(rest);
+  const std::string before(whole.substr(0, whole.size() - rest.size() - (written ? key.size() : 0)));
+  return before + (written ? "" : ".") + near + std::string(rest);
 }
 
 /// The table of several that the path goes into.
@@ -94,11 +96,15 @@ std::optional<NumberAt> number_at(const Values& root, std::string_view path, std
   const std::string_view whole = path;
   const Values* table = &root;
   std::string_view key = next_of(path);
+  bool written = true;  // the key stands in the path
   while (true) {
     const auto found = table->items().find(key);
     const Field* field = field_of(*table, key);
     if (found == table->items().end() || field == nullptr) {
-      if (nearest != nullptr) *nearest = with_nearest_key(*table, whole, key, path);
+      if (nearest != nullptr) {
+        *nearest = with_nearest_key(*table, whole, key, written, path);
+        if (!number_at(root, *nearest)) nearest->clear();  // more is wrong than this key
+      }
       return std::nullopt;
     }
     if (const auto* number = std::get_if<double>(&found->second.data))
@@ -111,7 +117,8 @@ std::optional<NumberAt> number_at(const Values& root, std::string_view path, std
     const auto* tables = std::get_if<std::vector<Values>>(&found->second.data);
     table = tables != nullptr && !path.empty() ? table_at(*tables, *field, path) : nullptr;
     if (table == nullptr || path.empty()) return std::nullopt;
-    key = path.starts_with('[') ? std::string_view("value") : next_of(path);  // [nodes] top = [0, 5] stands for its only key
+    written = !path.starts_with('[');
+    key = written ? next_of(path) : std::string_view("value");  // [nodes] top = [0, 5] stands for its only key
   }
 }
 

@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "uplift/statistics/sample_effects.h"
+
 namespace uplift {
 namespace {
 
@@ -122,7 +124,8 @@ void fit_stripes_of(const StudyLimit& limit, const std::vector<StudyCurve>& curv
 }
 
 /// Demands of runs that ended early are lower bounds where they are demands at all; a lost structure has at least the limit. Runs of
-/// unknown outcome have at most the limit where they count as survived, at least the limit where they count as exceeded.
+/// unknown outcome have at most the limit where they count as survived, at least the limit where they count as exceeded. A demand of 0,
+/// which has no logarithm, is at most the limit: the run has survived.
 void fit_cloud_of(const StudyLimit& limit, const std::vector<StudyCurve>& curves, StudyLimitFit& fit) {
   std::vector<SharedRun> runs;
   std::vector<double> unknown;  // intensities
@@ -131,11 +134,13 @@ void fit_cloud_of(const StudyLimit& limit, const std::vector<StudyCurve>& curves
       const std::optional<double> demand = demand_of(limit, *run.result);
       const StudyOutcome outcome = run.result->outcome;
       const double size = demand ? std::abs(*demand) : 0;
-      if (outcome == StudyOutcome::completed && size == 0) ++fit.without_demand;
-      const auto add = [&](double reached, bool at_least) {
-        fit.cloud.push_back({intensity, reached, at_least});
-        runs.push_back(shared_run(curve, {intensity, false, reached, at_least}));
+      const auto add = [&](double reached, bool at_least, bool at_most = false) {
+        fit.cloud.push_back({intensity, reached, at_least, at_most});
+        SharedRun shared{intensity, false, reached, at_least};
+        shared.at_most = at_most;
+        runs.push_back(shared_run(curve, shared));
       };
+      if (outcome == StudyOutcome::completed && size == 0) ++fit.without_demand, add(limit.limit, false, true);
       if (outcome == StudyOutcome::completed && size > 0) add(size, false);
       if (outcome == StudyOutcome::overturned || outcome == StudyOutcome::separated) add(std::max(size, limit.limit), true);
       const RunOutcome counted = outcome_of(limit, *run.result);
@@ -148,49 +153,59 @@ void fit_cloud_of(const StudyLimit& limit, const std::vector<StudyCurve>& curves
     return;
   }
   fit.regression = std::get<CloudFit>(std::move(made));
+  // without bounds the middle is by least squares, with m - 2; both ends are by likelihood, with m
+  const auto exact = static_cast<double>(fit.cloud.size());
+  const bool bounds = std::ranges::any_of(fit.cloud, [](const CloudPoint& each) { return each.at_least || each.at_most; });
+  const double scatter = bounds ? 1 : std::sqrt(exact / (exact - 2));
   const auto with_unknown = [&](bool exceeded) -> OrRefused<Fragility> {
     std::vector<CloudPoint> points = fit.cloud;
     for (const double intensity : unknown) points.push_back({intensity, limit.limit, exceeded, !exceeded});
-    OrRefused<CloudFit> all = fit_cloud(points, limit.limit);
+    OrRefused<CloudFit> all = fit_cloud(points, limit.limit, scatter);
     if (const Refused* refused = std::get_if<Refused>(&all)) return *refused;
     return std::get<CloudFit>(std::move(all)).fragility;
   };
-  // runs with demand 0 have no logarithm: they are stated beside the fit
   fit.fit = both_ways(with_unknown(false), fit.regression->fragility, with_unknown(true), study_confidence);
   if (std::holds_alternative<Fragility>(fit.fit.middle)) fit.shared = shared_error_of_cloud(*fit.regression, limit.limit, runs);
 }
 
 // ---- tornado ----
 
-/// Mean logarithm of the response of every sample: of its capacities, or of its demands. Nothing where there is none. Crossed samples are
-/// compared under the same motions at the same intensities: where a sample has no known capacity, or a demand of 0, its motion is left out
-/// of all of them, because a mean of what is left would be that of other motions.
-std::vector<std::optional<double>> responses(const StudyCase& study, const std::vector<StudyCurve>& curves, std::size_t limit,
-                                             const std::vector<StudyCapacity>& capacities) {
-  std::map<std::pair<std::size_t, double>, std::map<std::size_t, double>> logarithms;  // by motion and intensity, then by sample
-  std::set<std::size_t> samples;
+/// What is known of the response of the samples: capacities, or else the demands of completed runs (that of a lost structure is one of
+/// the instant at which the run ended). Logarithms by motion and intensity, then by sample.
+std::map<std::pair<std::size_t, double>, std::map<std::size_t, double>> known_responses(const StudyLimit& limit,
+                                                                                        const std::vector<StudyCurve>& curves,
+                                                                                        const std::vector<StudyCapacity>& capacities) {
+  std::map<std::pair<std::size_t, double>, std::map<std::size_t, double>> logarithms;
   const auto add = [&](const StudyCurve& curve, double intensity, double value) {
     if (value > 0) logarithms[{curve.motion(), intensity}][curve.sample()] = std::log(value);
   };
   for (const StudyCapacity& each : capacities)
     if (each.left_out && each.left_out->known == Known::exact) add(curves[each.curve], 0, each.left_out->im);
-  for (const StudyCurve& curve : curves) {
-    if (!curve.runs().empty()) samples.insert(curve.sample());
-    if (!capacities.empty()) continue;
+  if (!capacities.empty()) return logarithms;
+  for (const StudyCurve& curve : curves)
     for (const auto& [intensity, run] : curve.runs())
-      if (const std::optional<double> demand = demand_of(study.plan.limits[limit], *run.result);
-          demand && says_something(run.result->outcome))
+      if (const std::optional<double> demand = demand_of(limit, *run.result); demand && run.result->outcome == StudyOutcome::completed)
         add(curve, intensity, std::abs(*demand));
+  return logarithms;
+}
+
+/// Mean logarithm of the response of every sample, and on what it rests. Crossed samples are compared under the same motions at the same
+/// intensities, by the effects of both; paired ones have motions of their own.
+ColumnMeans responses(const StudyCase& study, const StudyLimit& limit, const std::vector<StudyCurve>& curves,
+                      const std::vector<StudyCapacity>& capacities) {
+  std::vector<LayoutCell> cells;
+  std::size_t rows = 0;
+  for (const auto& [motion, of_samples] : known_responses(limit, curves, capacities)) {
+    for (const auto& [sample, logarithm] : of_samples) cells.push_back({rows, sample, logarithm});
+    ++rows;
   }
+  if (study.plan.crossed) return column_means(cells, rows, study.samples.size());
   std::vector<double> sum(study.samples.size()), count(study.samples.size());
-  for (const auto& [motion, of_samples] : logarithms) {
-    if (study.plan.crossed && of_samples.size() < samples.size()) continue;
-    for (const auto& [sample, logarithm] : of_samples) sum[sample] += logarithm, count[sample] += 1;
-  }
-  std::vector<std::optional<double>> means(sum.size());
+  for (const LayoutCell& cell : cells) sum[cell.column] += cell.value, count[cell.column] += 1;
+  ColumnMeans made{std::vector<std::optional<double>>(sum.size()), 0, std::ssize(cells)};
   for (std::size_t i = 0; i < sum.size(); ++i)
-    if (count[i] > 0) means[i] = sum[i] / count[i];
-  return means;
+    if (count[i] > 0) made.mean[i] = sum[i] / count[i], ++made.columns;
+  return made;
 }
 
 std::vector<StudyInfluence> tornado_of(const StudyCase& study, const std::vector<std::optional<double>>& response) {
@@ -256,7 +271,13 @@ StudyLimitFit fit_limit(const StudyCase& study, const std::vector<StudyCurve>& c
   } else {
     fit_cloud_of(limit, curves, fit);
   }
-  fit.tornado = tornado_of(study, responses(study, curves, number, fit.capacities));
+  if (study.plan.variables.empty()) return fit;
+  const ColumnMeans response = responses(study, limit, curves, fit.capacities);
+  fit.tornado = tornado_of(study, response.mean);
+  fit.tornado_samples = response.columns, fit.tornado_responses = response.cells;
+  if (fit.tornado.empty())
+    fit.no_tornado = "it takes three samples at least whose " + std::string(fit.capacities.empty() ? "demand" : "capacity") + " is known" +
+                     (study.plan.crossed ? " under common motions" : "") + ", and there are " + std::to_string(response.columns);
   return fit;
 }
 
@@ -300,6 +321,12 @@ std::vector<StudyFloor> floor_percentiles(const StudyCase& study, const std::vec
         group.floor.lost += run.result->outcome != StudyOutcome::completed;
       }
     }
+  std::set<std::pair<std::string, double>> floors;
+  for (const auto& [key, group] : groups) floors.emplace(std::get<1>(key), std::get<2>(key));
+  for (const auto& [level, count] : missing)  // where all runs failed there are no spectra, which is stated
+    for (const auto& [floor, damping] : floors)
+      if (Runs& group = groups[{level, floor, damping}]; group.spectra.empty())
+        group.floor = {floor, damping, level, 0, 0, 0, {}, {}, {}, {}};
   std::vector<StudyFloor> made;
   for (auto& [key, group] : groups) {
     StudyFloor& floor = group.floor;

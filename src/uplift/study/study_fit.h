@@ -35,7 +35,7 @@ struct StudyLimitFit {
   std::vector<StudyCapacity> capacities;         // of methods that search
   std::vector<Stripe> stripes;                   // of stripes
   std::vector<CloudPoint> cloud;                 // of a cloud
-  long without_demand = 0;                       // runs of a cloud whose demand is 0, which has no logarithm: not in the regression
+  long without_demand = 0;                       // runs of a cloud whose demand is 0, which has no logarithm: at most the limit
   std::optional<CloudFit> regression;            // of a cloud
   BothWays fit{Refused{"there are no runs"}, Refused{"there are no runs"}, Refused{"there are no runs"}};
   OrRefused<TwoWayLayout> layout = Refused{"it is of searches, with two samples and two motions at least, crossed"};
@@ -45,8 +45,10 @@ struct StudyLimitFit {
   ConfidenceInterval theta_interval() const;
   /// Of P(exceed | im), im > 0: that of the likelihood, and at least what the interval of the median makes of the curve.
   ConfidenceInterval probability_interval(double im) const;
-  std::optional<IdaFractiles> fractiles;  // of searches: three curves or more, and a limit that grows with the intensity
-  std::vector<StudyInfluence> tornado;    // the largest first; of the capacity where it is searched, else of the demand
+  std::optional<IdaFractiles> fractiles;            // of searches: three curves or more, and a limit that grows with the intensity
+  std::vector<StudyInfluence> tornado;              // the largest first; of the capacity where it is searched, else of the demand
+  std::string no_tornado;                           // why there is none, though there are variables
+  long tornado_samples = 0, tornado_responses = 0;  // on which it rests
 };
 StudyLimitFit fit_limit(const StudyCase& study, const std::vector<StudyCurve>& curves, std::size_t limit);
 
@@ -57,7 +59,7 @@ struct StudyFloor {
   long runs = 0;
   long lost = 0;                                   // of these, runs that lost the structure: their spectra are those up to there
   long missing = 0;                                // runs without an outcome, which have no spectra
-  std::vector<double> frequencies, p16, p50, p84;  // Hz, m/s2
+  std::vector<double> frequencies, p16, p50, p84;  // Hz, m/s2; empty: no run of the level has a spectrum
 };
 std::vector<StudyFloor> floor_percentiles(const StudyCase& study, const std::vector<StudyCurve>& curves);
 

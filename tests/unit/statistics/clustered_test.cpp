@@ -118,5 +118,22 @@ TEST(Clustered, TailsStayFinite) {
   EXPECT_NEAR(std::get<SharedError>(shared_error_of_stripes(fit, runs)).se_log_theta / before, 1, 1e-9);
 }
 
+// Reciprocals of intensities and demands turn lower bounds into upper ones and ln theta into its negative: its error stays.
+TEST(Clustered, UpperBoundsAreTheMirrorImageOfLowerOnes) {
+  std::vector<SharedRun> lower = crossed(5, 12, 2), upper;
+  for (std::size_t i = 0; i < lower.size(); i += 5) lower[i].censored = true;
+  std::vector<CloudPoint> low, high;
+  for (const SharedRun& run : lower) {
+    low.push_back({run.im, run.demand, run.censored});
+    high.push_back({1 / run.im, 1 / run.demand, false, run.censored});
+    upper.push_back({1 / run.im, false, 1 / run.demand, false, run.motion, run.sample, run.censored});
+  }
+  const auto first = std::get<CloudFit>(fit_cloud(low, 1)), second = std::get<CloudFit>(fit_cloud(high, 1));
+  EXPECT_NEAR(first.fragility.theta() * second.fragility.theta(), 1, 1e-9);
+  const auto one = std::get<SharedError>(shared_error_of_cloud(first, 1, lower)),
+             other = std::get<SharedError>(shared_error_of_cloud(second, 1, upper));
+  EXPECT_NEAR(one.se_log_theta / other.se_log_theta, 1, 1e-9);
+}
+
 }  // namespace
 }  // namespace uplift::clustered_test

@@ -122,6 +122,31 @@ TEST(StudyFit, FloorPercentilesSayWhatTheyAreMadeOf) {
   EXPECT_NEAR(floors[0].p50[0], 6.5, 1e-12);
 }
 
+/// A level without any spectrum is named with its failed runs.
+TEST(StudyFit, FloorPercentilesNameLevelsAtWhichAllRunsFailed) {
+  std::string plan = searching;
+  plan.replace(plan.find("type = \"ida\""), plan.find("[[record]]") - plan.find("type = \"ida\""),
+               "type = \"stripes\"\nlevels = [1.0, 2.0]\n");
+  const StudyCase study = study_of(plan);
+  std::vector<StudyCurve> curves = study_curves(study);
+  std::map<std::string, StudyResult> results;
+  for (StudyCurve& curve : curves) {
+    for (const StudyPoint& point : curve.wanted([](const std::string&) -> const StudyResult* { return nullptr; })) {
+      StudyResult& result = results[point.id] = opened(0.001, point.intensity > 1.5 ? StudyOutcome::failed : StudyOutcome::completed);
+      if (says_something(result.outcome)) result.spectra = {{"top", 0.05, {1}, {3.0}}};
+    }
+    curve.wanted([&](const std::string& id) { return &results.at(id); });
+  }
+  const std::vector<StudyFloor> floors = floor_percentiles(study, curves);
+  ASSERT_EQ(floors.size(), 2U);
+  EXPECT_EQ(floors[0].runs, 2);
+  EXPECT_EQ(floors[1].level, 2);
+  EXPECT_EQ(floors[1].floor, "top");
+  EXPECT_EQ(floors[1].runs, 0);
+  EXPECT_EQ(floors[1].missing, 2);
+  EXPECT_TRUE(floors[1].p50.empty());
+}
+
 /// The demand is that of the intensity times the root of the stiffness, but for the stiffest sample, which stays closed at the lowest one:
 /// what is left of it must not be compared with all demands of the others.
 TEST(StudyFit, TornadoComparesTheSameMotionsAndIntensities) {
@@ -137,14 +162,48 @@ TEST(StudyFit, TornadoComparesTheSameMotionsAndIntensities) {
   for (StudyCurve& curve : curves) {
     for (const StudyPoint& point : curve.wanted([](const std::string&) -> const StudyResult* { return nullptr; })) {
       const double k = stiffness[curve.sample()];
-      results[point.id] = opened(k == stiff && point.intensity < 0.5 ? 0 : 1e-3 * point.intensity * std::sqrt(k));
+      const bool lost = k == soft && point.intensity > 1.5;  // its demand is that up to the loss
+      results[point.id] = opened(k == stiff && point.intensity < 0.5 ? 0
+                                 : lost                              ? 1
+                                                                     : 1e-3 * point.intensity * std::sqrt(k),
+                                 lost ? StudyOutcome::overturned : StudyOutcome::completed);
     }
     curve.wanted([&](const std::string& id) { return &results.at(id); });
   }
   const StudyLimitFit fit = fit_limit(study, curves, 0);
   ASSERT_EQ(fit.tornado.size(), 1U);
-  EXPECT_NEAR(fit.tornado[0].low, 1e-3 * std::sqrt(2.0) * std::sqrt(soft), 1e-15);  // of the intensities 1 and 2
-  EXPECT_NEAR(fit.tornado[0].high, 1e-3 * std::sqrt(2.0) * std::sqrt(stiff), 1e-15);
+  const double level = std::cbrt(0.1 * 1.0 * 2.0);  // of all intensities: what is missing is that of the fit, which is exact here
+  EXPECT_NEAR(fit.tornado[0].low, 1e-3 * level * std::sqrt(soft), 1e-15);
+  EXPECT_NEAR(fit.tornado[0].high, 1e-3 * level * std::sqrt(stiff), 1e-15);
+  EXPECT_EQ(fit.tornado_samples, 3);
+  EXPECT_EQ(fit.tornado_responses, 18 - 4);
+  EXPECT_EQ(fit.no_tornado, "");
+}
+
+/// A sample that fails in every run is left out alone; where less than three are left, it is said why there is no tornado.
+TEST(StudyFit, ASampleWithoutResponsesDoesNotRemoveTheTornado) {
+  for (const std::size_t known : {3U, 2U}) {
+    std::string plan = "samples = 4\n" + std::string(searching) + variable;
+    plan.replace(plan.find("type = \"ida\""), plan.find("[[record]]") - plan.find("type = \"ida\""),
+                 "type = \"stripes\"\nlevels = [1.0]\n");
+    const StudyCase study = study_of(plan);
+    std::vector<StudyCurve> curves = study_curves(study);
+    std::map<std::string, StudyResult> results;
+    std::vector<double> stiffness;
+    for (std::size_t s = 0; s < known; ++s) stiffness.push_back(study.samples[s].values[0]);
+    for (StudyCurve& curve : curves) {
+      for (const StudyPoint& point : curve.wanted([](const std::string&) -> const StudyResult* { return nullptr; }))
+        results[point.id] = curve.sample() < known ? opened(1e-3 * stiffness[curve.sample()]) : opened(0, StudyOutcome::failed);
+      curve.wanted([&](const std::string& id) { return &results.at(id); });
+    }
+    const StudyLimitFit fit = fit_limit(study, curves, 0);
+    EXPECT_EQ(fit.tornado_samples, static_cast<long>(known));
+    EXPECT_EQ(fit.tornado.empty(), known == 2);
+    EXPECT_EQ(fit.no_tornado.find("it takes three samples") == 0, known == 2) << fit.no_tornado;
+    if (known == 2) continue;
+    EXPECT_NEAR(fit.tornado[0].low, 1e-3 * std::ranges::min(stiffness), 1e-15);
+    EXPECT_NEAR(fit.tornado[0].high, 1e-3 * std::ranges::max(stiffness), 1e-15);
+  }
 }
 
 /// Ten demands, and two runs that failed below the limit between them: with the demands of the latter at least and at most the limit, the
@@ -160,10 +219,11 @@ TEST(StudyFit, RunsOfUnknownOutcomeCountBothWaysInACloud) {
   ASSERT_EQ(curves.size(), 1U);
   const std::map<double, double> demands{{.1, .0021}, {.15, .0028}, {.2, .0047}, {.25, .0049}, {.3, .0072},
                                          {.4, .0083}, {.5, .0125},  {.6, .0131}, {.8, .021},   {1., .0236}};
-  std::map<std::string, StudyResult> results;
+  std::map<std::string, StudyResult> results, closed;
   for (const StudyPoint& point : curves[0].wanted([](const std::string&) -> const StudyResult* { return nullptr; })) {
     const auto known = demands.find(point.intensity);
     results[point.id] = known != demands.end() ? opened(known->second) : opened(0.001, StudyOutcome::failed);
+    closed[point.id] = known != demands.end() ? opened(known->second) : opened(0);
   }
   ASSERT_EQ(results.size(), 12U);
   EXPECT_TRUE(curves[0].wanted([&](const std::string& id) { return &results.at(id); }).empty());
@@ -173,9 +233,18 @@ TEST(StudyFit, RunsOfUnknownOutcomeCountBothWaysInACloud) {
                   &survived = std::get<Fragility>(fit.fit.survived);
   EXPECT_NEAR(middle.theta(), 0.43853218, 1e-8);
   EXPECT_NEAR(exceeded.theta(), 0.43182863, 1e-8);
-  EXPECT_NEAR(exceeded.beta(), 0.07941981, 1e-8);
+  EXPECT_NEAR(middle.beta(), 0.08522703, 1e-8);  // least squares: n - 2 = 8 of 10 demands, and so for both ends
+  const double few = std::sqrt(10.0 / 8);
+  EXPECT_NEAR(exceeded.beta(), few * 0.07941981, 1e-8);
   EXPECT_NEAR(survived.theta(), 0.44316412, 1e-8);
-  EXPECT_NEAR(survived.beta(), 0.07684176, 1e-8);
+  EXPECT_NEAR(survived.beta(), few * 0.07684176, 1e-8);
+  // runs that were completed with a demand of 0 have survived: the same maximum, now that of the figure in the middle
+  std::vector<StudyCurve> again = study_curves(study);
+  EXPECT_TRUE(again[0].wanted([&](const std::string& id) { return &closed.at(id); }).empty());
+  const StudyLimitFit zeros = fit_limit(study, again, 0);
+  EXPECT_EQ(zeros.without_demand, 2);
+  EXPECT_NEAR(std::get<Fragility>(zeros.fit.middle).theta(), 0.44316412, 1e-8);
+  EXPECT_NEAR(std::get<Fragility>(zeros.fit.middle).beta(), 0.07684176, 1e-8);
 }
 
 TEST(StudyCurve, ASearchFindsTheIntensityOfTheLimit) {
@@ -376,6 +445,22 @@ TEST(CaseEdit, NumbersAreFoundByTheirPath) {
   for (const char* path : {"", "[", "interface", "interface[1].law.K_n", "interface[0].law.K_m", "interface[0].law", "interface[x].law.K_n",
                            "interface[0", "ground_acceleration[0].direction[3]", "title", "stage[1].step.more"})
     EXPECT_FALSE(number_at(read.values, path)) << path;
+}
+
+TEST(CaseEdit, APathIsSuggestedOnlyIfItExists) {
+  const Case read = check_case(
+      read_toml_text(tower() + "[[function]]\nname = \"f\"\nshape = { type = \"table\", times = [0, 1], values = [0, 2] }\n", "case.toml"),
+      "case.toml");
+  const auto nearest = [&](std::string_view path) {
+    std::string found;
+    EXPECT_FALSE(number_at(read.values, path, &found)) << path;
+    return found;
+  };
+  EXPECT_EQ(nearest("function[0].shape[1]"), "function[0].shape.values[1]");
+  EXPECT_EQ(nearest("function[0].shape[7]"), "");
+  EXPECT_EQ(nearest("interface[0].law[1]"), "");
+  EXPECT_EQ(nearest("interface[0].lax.K_m"), "");
+  EXPECT_EQ(nearest("interface[0].law.Kn"), "interface[0].law.K_n");
 }
 
 }  // namespace

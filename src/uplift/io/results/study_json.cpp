@@ -255,7 +255,7 @@ void write_limit(ResultWriter& out, const StudyDocument& study, const StudyDocum
     out.number("a", cloud.a, "1", "constant");
     out.number("b", cloud.b, "1", "slope");
     out.number("sigma", cloud.sigma, "1", "standard deviation of ln demand");
-    out.count("without_demand", fit.without_demand, "runs with demand 0, which has no logarithm: not in the regression");
+    out.count("without_demand", fit.without_demand, "runs with demand 0, which has no logarithm: they count as at most the limit");
   });
   out.number("confidence", study_confidence, "1", "confidence of all intervals");
   out.object("fit", "lognormal fragility without runs of unknown outcome, where both ends are near enough",
@@ -281,6 +281,12 @@ void write_limit(ResultWriter& out, const StudyDocument& study, const StudyDocum
                         "geometric mean over the third of the samples with its smallest values");
              out.number("high", influence.high, "of intensity, or of the demand", "over the third with its largest values");
            });
+  out.object("tornado_basis", "on what `tornado` rests", [&] {
+    out.count("samples", fit.tornado_samples,
+              "samples that are compared: those with a known response, and in a crossed study with motions in common");
+    out.count("responses", fit.tornado_responses, "capacities, or demands of completed runs, that are compared");
+    out.text("reason", fit.no_tornado, "why there is no tornado; empty: there is one, or no variable");
+  });
 }
 
 void write_floor(ResultWriter& out, const StudyFloor& floor) {
@@ -290,7 +296,7 @@ void write_floor(ResultWriter& out, const StudyFloor& floor) {
   out.count("runs", floor.runs, "runs");
   out.count("lost", floor.lost, "of these, runs that overturned or separated: their spectra are those up to there");
   out.count("missing", floor.missing, "further runs, without an outcome: they have no spectra");
-  out.numbers("frequencies", floor.frequencies, "Hz", "frequencies");
+  out.numbers("frequencies", floor.frequencies, "Hz", "frequencies; empty: no run of the level has a spectrum");
   out.numbers("p16", floor.p16, "m/s2", "pseudo-acceleration that 16 % of the runs stay below");
   out.numbers("p50", floor.p50, "m/s2", "median");
   out.numbers("p84", floor.p84, "m/s2", "pseudo-acceleration that 84 % of the runs stay below");

@@ -157,6 +157,12 @@ StudyPlan study_plan(const Raw& raw) {
       if (limit.quantity->at_least)
         fail(*limit.given.table, "quantity", "a number that grows with the intensity: a cloud is regressed on it",
              fmt::format("{}, which has a smallest value", limit.quantity->name));
+      if (limit.quantity->name.starts_with("change_of"))  // of either sign: it has no logarithm
+        fail(*limit.given.table, "quantity", "a number whose size counts: a cloud is regressed on its logarithm",
+             fmt::format("{}, a change that may be negative", limit.quantity->name));
+      if (!(limit.limit > 0))
+        fail(*limit.given.table, "limit", "a number > 0: a cloud is regressed on the logarithm of the demand",
+             limit.given.table->text("limit"));
     }
   for (const Values& table : root.tables("motions")) plan.many_motions.push_back(many_motions_of(table));
   plan.site = site_of(root);
