@@ -56,7 +56,7 @@ fuzz() {
   grep -E "^(#[0-9]+.*DONE|stat::number_of_executed_units|stat::average_exec|stat::peak_rss)" "$log"
 }
 
-# all at the same time: each has its two minutes, whatever the number of cores
+# all at the same time: each has its time, whatever the number of cores
 jobs=()
 for target in "${targets[@]}"; do
   fuzz "$target" &
