@@ -44,6 +44,10 @@ double stiffness_under_rigid_bodies(const Model& model) {
 
 }  // namespace
 
+Sparse joint_stiffness(const Sparse& b, const Vector& d) {
+  return b.transpose() * d.asDiagonal() * b;
+}
+
 Vector stiffness_of_parts(const Model& model, const Sparse& stiffness_matrix, const Sparse& b) {
   const Vector diagonal = resisting_diagonal(model, stiffness_matrix, b);
   Vector compliance = Vector::Zero(b.rows());

@@ -37,7 +37,7 @@ class InterfaceEnergy {
 
 /// What the friction of constraints takes in a step [J]: the work of the mean force on the slip of every point, where it is positive. In
 /// the mean the force at the end has the share `end_share`. What a force that turns round in the step gives back stays in the residual;
-/// step_friction.cpp keeps it small.
+/// impact_friction.cpp keeps it small.
 double friction_work(const std::vector<Block>& blocks, const State& from, const State& to, double end_share);
 
 }  // namespace uplift

@@ -155,16 +155,16 @@ void JointFilter::begin_rows(Footing& footing, JointFilterInput& input) {
 template <int N>
 double JointFilter::end_rows(Footing& footing, const InterfaceSolution& solution, double to_mean, const State& now, const State& next,
                              JointFilterInput& input) const {
-  using Rows = Fixed<N, 1>;
+  using OfRows = Fixed<N, 1>;
   const int first = footing.first;
-  const Rows before = Eigen::Map<const Rows>(footing.elastic), lag = Eigen::Map<const Rows>(footing.lag);
+  const OfRows before = Eigen::Map<const OfRows>(footing.elastic), lag = Eigen::Map<const OfRows>(footing.lag);
   const Fixed<N, N> coefficient = Eigen::Map<const Fixed<N, N>>(footing.coefficient);
   look(footing, next);
-  const Rows added = to_mean * solution.force.segment<N>(first) - solution.plain.segment<N>(first);  // N, N m
+  const OfRows added = to_mean * solution.force.segment<N>(first) - solution.plain.segment<N>(first);  // N, N m
   double dissipated = 0, stored = 0;
-  Rows filtered = Rows::Zero();
+  OfRows filtered = OfRows::Zero();
   if (input.coefficient[first] > 0) {
-    const Rows increment = Eigen::Map<const Rows>(footing.elastic) - before, ahead = increment - lag;
+    const OfRows increment = Eigen::Map<const OfRows>(footing.elastic) - before, ahead = increment - lag;
     const double whole = ahead.dot(coefficient * ahead), taken = added.dot(ahead);
     const double kept = whole > 0 && taken < (1 - 1e-6) * whole ? larger(taken / whole, 0.0) : 1;  // theta
     filtered = pole_ * lag + (1 - pole_) * increment;
@@ -173,7 +173,7 @@ double JointFilter::end_rows(Footing& footing, const InterfaceSolution& solution
   } else {
     dissipated = added.dot(solution.opening.segment<N>(first) - now.opening.segment<N>(first));
   }
-  Eigen::Map<Rows>(footing.filtered) = filtered;
+  Eigen::Map<OfRows>(footing.filtered) = filtered;
   footing.stored = stored;
   begin_rows<N>(footing, input);
   return dissipated;

@@ -22,7 +22,23 @@ struct Scheme {
   double stretch() const { return 1 + 2 * gain; }
   /// The trapezoidal rule, filtered or not: the path-averaged traction closes the energy balance exactly with it and only with it.
   bool average_acceleration() const { return beta == 0.25 && gamma == 0.5 && alpha_m == 0 && alpha_f == 0; }
+  /// A force p at the end of a step puts -w M^-1 B^T p into the velocity [s].
+  double velocity_weight(double step) const { return gamma * step * (1 - alpha_f) / (1 - alpha_m); }
+  /// Its share in the change of velocity; that of the force at the beginning is the rest. Half with average acceleration.
+  double end_share() const { return gamma * (1 - alpha_f) / (1 - alpha_m); }
 };
+
+/// Weights of a step. The right-hand side of the displacement increment is
+///   R = f1 + f0 af/w - K u0/w - B^T p0 af/w + M (mass_velocity v0 + mass_acceleration a0) - C (damping_velocity v0 + damping_acceleration
+///   a0)
+/// with w = 1 - af, and for the path average, in the midpoint form with the filters of the scheme (b: gain, h_e = (1 + 2 b) dt),
+///   R = (f0 + f1 - 2 K (u0 - b d_u) + (4/h_e) M (v0 - b d_v))/(1 + 2 b)
+struct StepWeights {
+  double mass = 0, damping = 0;  // K_eff = K + damping C + mass M
+  double share = 1;              // 1/(1 + 2 b)
+  double mass_velocity = 0, mass_acceleration = 0, damping_velocity = 0, damping_acceleration = 0;
+};
+StepWeights weights_of(const Scheme& scheme, double step);
 
 std::span<const Entry<Scheme>* const> scheme_catalog();
 std::span<const PartInfo* const> schemes();

@@ -5,6 +5,19 @@
 // The schemes of the Newmark family: coefficients only (see scheme.h for the equations).
 namespace uplift {
 
+StepWeights weights_of(const Scheme& s, double step) {
+  const double dt = step * s.stretch(), w = 1 - s.alpha_f;
+  StepWeights made;
+  made.damping = s.gamma / (s.beta * dt);
+  made.mass = (1 - s.alpha_m) / (w * s.beta * dt * dt);
+  made.share = 1 / s.stretch();
+  made.mass_velocity = (1 - s.alpha_m) / (w * s.beta * dt);
+  made.mass_acceleration = ((1 - s.alpha_m) * (1 / (2 * s.beta) - 1) - s.alpha_m) / w;
+  made.damping_velocity = 1 - s.gamma / s.beta + s.alpha_f / w;
+  made.damping_acceleration = dt * (1 - s.gamma / (2 * s.beta));
+  return made;
+}
+
 const Entry<Scheme>& entry_scheme_average_acceleration() {
   static const Entry<Scheme> entry{
       {.name = "average_acceleration",

@@ -133,7 +133,7 @@ void LoadSteps::assemble() {
   OwnedSum stiffness = bulk_.upper(1, 0, 0);
   matrix_.here.swap(stiffness.here);
   matrix_.there.swap(stiffness.there);
-  if (b_.rows() > 0) matrix_.here += Sparse(Sparse(b_.transpose() * blocks_.shift.asDiagonal() * b_).triangularView<upper_triangle>());
+  if (b_.rows() > 0) matrix_.here += Sparse(joint_stiffness(b_, blocks_.shift).triangularView<upper_triangle>());
 }
 
 /// The same with the tangent of solids that yield.

@@ -10,7 +10,6 @@
 #include "uplift/dynamics/monolithic.h"
 #include "uplift/dynamics/step_level.h"
 #include "uplift/math/small.h"
-#include "uplift/model/base_size.h"
 
 namespace uplift {
 namespace {
@@ -40,9 +39,7 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
     : model_(model),
       bulk_(bulk),
       b_(b),
-      still_gap_(gap),
-      gap_(gap),
-      gap_step_(Vector::Zero(gap.size())),
+      motion_(model, gap),
       behaviours_(behaviours),
       method_(method),
       impact_(impact),
@@ -51,23 +48,20 @@ Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Ve
       linear_(counts),
       path_(options.path_average && options.scheme.average_acceleration() && !method.constrains()),
       filtered_(path_ && options.scheme.filtered()),
-      impacts_(impact.acts() && !path_ && b.rows() > 0),
       yielding_(model) {
   still_force_ = options.held != nullptr ? *options.held : Vector(Vector::Zero(bulk.unknowns));
   model.add_constant_force(still_force_);
-  for (const PrescribedMotion& motion : model.motions) gap_moves_ = gap_moves_ || (motion.opening.size() > 0 && !motion.opening.isZero(0));
   if (!filtered_) options_.scheme.gain = 0;  // constraints: the trapezoidal rule, whose impacts have rules of their own
   if (filtered_ && b.rows() > 0) joint_filter_ = std::make_unique<JointFilter>(model, behaviours, options.scheme);
   if (!options.monolithic) shift_ = stiffness_for_massless();
   levels_.resize(static_cast<std::size_t>(options.halvings) + 1);
   // Two factors are kept: the one of the step, which needs the most room while it is made, comes first. One that is needed for the
   // acceleration of the beginning alone comes and goes before it (start).
-  if (path_ || impacts_) level(0);
-  if (const double size = b.rows() > 0 ? base_size(model) : 0; size > 0) closed_gap_ = closed_share * size;
-  if (impacts_) {
-    prepare_impacts();
-    impact_impulse_.setZero(b.rows());
-  }
+  if (path_ || impacts_act()) level(0);
+  if (impacts_act() && accelerator().why().empty())
+    impacts_ = std::make_unique<ContactImpacts>(
+        impact_, options_.scheme, bulk_, ContactRows(model_, bulk_, b_, motion_, accelerator().spread(b_)),
+        blocks_of(model_, behaviours_).blocks, [this](const State& state, Vector& forces) { forces_at(state, forces); }, linear_);
   if (yielding_.any()) newton_ = std::make_unique<PlasticNewton>(yielding_, bulk.stiffness_matrix.diagonal(), options.plastic);
 }
 
@@ -76,8 +70,8 @@ Stepper::~Stepper() = default;
 const Accelerator& Stepper::accelerator() const {
   if (accelerator_ == nullptr) {
     solver_.wait_for_room();
-    accelerator_ = std::make_unique<Accelerator>(model_, bulk_, impacts_ ? &b_ : nullptr, solver_, linear_);
-    if (impacts_ || accelerator_->too_large()) mass_failure_ = accelerator_->why();
+    accelerator_ = std::make_unique<Accelerator>(model_, bulk_, impacts_act() ? &b_ : nullptr, solver_, linear_);
+    if (impacts_act() || accelerator_->too_large()) mass_failure_ = accelerator_->why();
   }
   return *accelerator_;
 }
@@ -96,7 +90,7 @@ Outcome Stepper::solve(Level& level) {
     return last->solve(right_, start, increment_);
   }
   const PlasticNewton::Make soften = [&](const Sparse& d, std::string& why) -> std::unique_ptr<StepSolver> {
-    if (options_.monolithic) return make_monolithic(matrix_of(level) + d, b_, gap_, frame_of(level));
+    if (options_.monolithic) return make_monolithic(matrix_of(level) + d, b_, motion_.gap(), frame_of(level));
     OwnedSum matrix = upper_of(level);
     matrix.here += Sparse(d.triangularView<upper_triangle>());
     auto factor = std::make_shared<const BulkFactor>(matrix, &b_, bulk_.small, solver_, model_, linear_,
@@ -104,7 +98,7 @@ Outcome Stepper::solve(Level& level) {
     why = factor->why();
     if (!factor->ok()) return nullptr;
     level.tangent = factor;
-    return std::make_unique<Condensed>(model_, b_, gap_, gap_moves_, std::move(factor), frame_of(level), method_, linear_);
+    return std::make_unique<Condensed>(model_, b_, motion_.gap(), motion_.acts(), std::move(factor), frame_of(level), method_, linear_);
   };
   Outcome outcome = newton_->solve({right_, start, plastic_now_, next_.time, 1 / options_.scheme.stretch(), level.step}, *last, soften,
                                    increment_, plastic_next_);
@@ -175,7 +169,7 @@ void Stepper::right_hand_side(const Level& level) {
   const Eigen::Index n = bulk_.unknowns;
   if (filtered_) {
     const double *mv = momentum_now_.data(), *filtered_stiff = filtered_stiff_.data(), *filtered_momentum = filtered_momentum_.data();
-    const double w = level.share, gain = options_.scheme.gain, inertia = level.mass_velocity;
+    const double w = level.weights.share, gain = options_.scheme.gain, inertia = level.weights.mass_velocity;
     small::with_size(n, [=](auto count) {
 #pragma omp simd
       for (Eigen::Index i = 0; i < count; ++i)
@@ -186,7 +180,7 @@ void Stepper::right_hand_side(const Level& level) {
   }
   if (path_) {
     const double* mv = momentum_now_.data();
-    const double inertia = level.mass_velocity;  // 4/dt
+    const double inertia = level.weights.mass_velocity;  // 4/dt
     small::with_size(n, [=](auto count) {
 #pragma omp simd
       for (Eigen::Index i = 0; i < count; ++i) right[i] = f0[i] + f1[i] - 2 * ku[i] + inertia * mv[i];
@@ -195,7 +189,7 @@ void Stepper::right_hand_side(const Level& level) {
     return;
   }
   const double w = 1 - options_.scheme.alpha_f, ratio = options_.scheme.alpha_f / w;
-  const double of_velocity = level.mass_velocity, of_acceleration = level.mass_acceleration;
+  const double of_velocity = level.weights.mass_velocity, of_acceleration = level.weights.mass_acceleration;
   const double *v0 = now_.velocity.data(), *a0 = now_.acceleration.data();
   double* work = work_.data();
   small::with_size(n, [=](auto count) {
@@ -209,7 +203,7 @@ void Stepper::right_hand_side(const Level& level) {
   right_ += work2_;
   if (!bulk_.damping.zero()) {
     for (Eigen::Index i = 0; i < n; ++i)
-      work_[i] = level.damping_velocity * now_.velocity[i] + level.damping_acceleration * now_.acceleration[i];
+      work_[i] = level.weights.damping_velocity * now_.velocity[i] + level.weights.damping_acceleration * now_.acceleration[i];
     bulk_.damping.multiply(work_, work2_);
     right_ -= work2_;
   }
@@ -228,7 +222,7 @@ bool Stepper::kinematics(const Level& level) {
   double *u1 = next_.displacement.data(), *v1 = next_.velocity.data(), *a1 = next_.acceleration.data();
   double size = 0;
   if (filtered_) {
-    const double *filtered = now_.filter.velocity.data(), gain = s.gain, rate = 1 / dt, inverse = 2 * level.share;
+    const double *filtered = now_.filter.velocity.data(), gain = s.gain, rate = 1 / dt, inverse = 2 * level.weights.share;
     small::with_size(bulk_.unknowns, [=, &size](auto count) {
       double sum = 0;
 #pragma omp simd reduction(+ : sum)
@@ -242,7 +236,7 @@ bool Stepper::kinematics(const Level& level) {
     return std::isfinite(size);
   }
   if (path_) {
-    const double rate = 0.5 * level.mass_velocity;  // 2/dt
+    const double rate = 0.5 * level.weights.mass_velocity;  // 2/dt
     small::with_size(bulk_.unknowns, [=, &size](auto count) {
       double sum = 0;
 #pragma omp simd reduction(+ : sum)
@@ -275,19 +269,21 @@ bool Stepper::kinematics(const Level& level) {
 bool Stepper::balance_step(Level& level) {
   for (int reductions = 0;; ++reductions) {
     right_hand_side(level);
-    if (shift_.size() > 0) right_ -= b_.transpose() * shift_.cwiseProduct(gap_ + b_ * now_.displacement).eval();
+    if (shift_.size() > 0) right_ -= b_.transpose() * shift_.cwiseProduct(motion_.gap() + b_ * now_.displacement).eval();
     const Outcome outcome = solve(level);
     counts_.iterations += outcome.iterations;
     counts_.cycles += outcome.cycles;
     if (outcome.converged) {
-      if (!impacts_ || !drop_creating()) return true;
+      if (impacts_ == nullptr || !impacts_->drop_creating(last_->model->blocks, now_, *solution_, energies_,
+                                                          std::max(largest_external_, std::abs(initial_energy_))))
+        return true;
       if (reductions == 0) level.increment = increment_, level.plastic = plastic_next_, level.solution = *solution_;
       if (reductions < most_reductions) continue;
     }
     why_ = outcome.converged ? fmt::format("forces at the beginning of the step give energy back after {} reductions", most_reductions)
                              : outcome.why;
     if (reductions == 0 || level.step > smallest_share * options_.step) return false;
-    restore_dropped();
+    if (impacts_ != nullptr) impacts_->restore_dropped(now_);
     increment_ = level.increment, plastic_next_ = level.plastic, solution_ = &level.solution;
     return true;
   }
@@ -301,8 +297,8 @@ bool Stepper::try_step(Level& level) {
   if (filtered_ && now_.filter.step > level.step) shorten_filters(level.step);
   next_.time = now_.time + level.step;
   force_at(next_.time, force_next_);
-  if (gap_moves_) move_gap(now_.time, next_.time);
-  if (gap_moves_ && impacts_) move_rates(next_.time);
+  if (motion_.acts()) motion_.go(now_.time, next_.time);
+  if (motion_.acts() && impacts_ != nullptr) motion_.set_rates(next_.time);
   if (!balance_step(level)) return false;
   const InterfaceSolution& solution = *solution_;
   if (shift_.size() > 0) {
@@ -334,38 +330,32 @@ bool Stepper::try_step(Level& level) {
         });
       }
   } else {
-    small::copy(contact_.size(), solution.force.data(), contact_.data());
-    small::copy(contact_.size(), contact_.data(), next_.force.data());
-    const double end = impacts_ ? end_share() : 0.5;
-    friction_step_ = friction_work(last_->model->blocks, now_, next_, end);
+    small::copy(solution.force.size(), solution.force.data(), next_.force.data());
+    const double end = impacts_ != nullptr ? options_.scheme.end_share() : 0.5;
+    const double friction = friction_work(last_->model->blocks, now_, next_, end);
     // what moving supports put in through the interfaces, by the forces that moved the step
-    if (gap_moves_) {
-      energies_.external += (1 - end) * now_.force.dot(gap_step_) + end * contact_.dot(gap_step_);
+    if (motion_.acts()) energies_.external += (1 - end) * now_.force.dot(motion_.change()) + end * next_.force.dot(motion_.change());
+    if (impacts_ != nullptr) {
+      SolvedStep step{level.impacts, last_->model->blocks, now_, next_, momentum_end(), energies_, friction};
+      impacts_->apply(step);
+      energies_.friction += step.friction;
+    } else {
+      next_.mean_force = next_.force;
+      energies_.friction += friction;
     }
-    if (impacts_) {
-      const double taken = impact_loss_;
-      apply_impact(level);
-      // pressure and friction act together: what one gives while the other takes more is no energy that contact has given
-      const double given = std::max(0.0, std::min({taken - impact_loss_, -impact_loss_, friction_step_}));
-      friction_step_ -= given, impact_loss_ += given;
-    }
-    small::copy(contact_.size(), contact_.data(), next_.force.data());
-    small::copy(contact_.size(), contact_.data(), next_.mean_force.data());
-    if (impacts_ && impact_.force_includes_impulse()) next_.mean_force += impulse_ / level.step;
   }
   return true;
 }
 
 bool Stepper::substep(int halving) {
   Level& now = level(halving);
-  const double impact_before = impact_loss_;
-  begin_kick(now);
+  if (impacts_ != nullptr) impacts_->begin_step(now_, now.step);
   if (try_step(now)) {
     book_energies(now);
     exchange(now_, next_);
     force_now_.swap(force_next_);
     if (!path_) now_.acceleration.swap(next_.acceleration);
-    if (impacts_) std::swap(kick_, kick_next_);
+    if (impacts_ != nullptr) impacts_->accept();
     if (filtered_) {
       std::swap(now_.filter.step, next_.filter.step);
       now_.filter.displacement.swap(next_.filter.displacement), now_.filter.velocity.swap(next_.filter.velocity);
@@ -378,13 +368,10 @@ bool Stepper::substep(int halving) {
     }
     counts_.deepest = std::max(counts_.deepest, halving);
     last_step_ = now.step;
-    friction_.reduced = friction_.slips = false;
     return true;
   }
-  impact_loss_ = impact_before;
   if (path_) next_.velocity = now_.velocity;  // what has failed may not be finite
-  restore_dropped();
-  undo_kick();
+  if (impacts_ != nullptr) impacts_->undo(now_);
   failed_step_ = now.step;
   if (now.hopeless || !mass_failure_.empty() || halving >= options_.halvings) return false;
   if (const long spent = counts_.iterations - iterations_before_; spent > most_iterations_of_a_step) {

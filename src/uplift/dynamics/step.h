@@ -4,14 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "uplift/contact/impact/coulomb.h"
-#include "uplift/contact/impact/impact.h"
 #include "uplift/dynamics/condensed.h"
-#include "uplift/dynamics/energy.h"
+#include "uplift/dynamics/contact_impacts.h"
 #include "uplift/dynamics/joint_filter.h"
 #include "uplift/dynamics/plastic_newton.h"
 #include "uplift/dynamics/scheme.h"
 #include "uplift/dynamics/step_balance.h"
+#include "uplift/dynamics/support_motion.h"
 
 namespace uplift {
 
@@ -34,13 +33,6 @@ struct StepCounts {
   int deepest = 0;  // largest number of halvings that was needed
 };
 
-/// What the step after an impact begins with beside the state, for the damping force that acted at once (docs/theory, section 5).
-struct Kick {
-  double step = 0;      // s: of the step of the impact; 0: there was none
-  Vector acceleration;  // free unknowns
-  Vector force;         // interface rows [N]
-};
-
 /// What a stage hands on to the next one beside its state.
 struct Ledger {
   Energies energies;
@@ -59,17 +51,6 @@ struct MarchState {
   std::vector<int> sizes;  // halvings whose matrices have been factorised
 };
 
-/// Of steps that drop forces of their beginning, and of impacts with friction (step_friction.cpp); work space.
-struct FrictionOfImpacts {
-  bool reduced = false;                        // forces of the beginning have been reduced; they were:
-  Vector force, acceleration;                  // rows, unknowns
-  bool slips = false;                          // points with friction are among them
-  Vector dropped, rates, takes_part, impulse;  // rows; dropped: forces that are taken out
-  Vector change;                               // rows: of the impulse over that of the forces [N s]
-  Vector velocity, after, soon;                // unknowns: velocity and acceleration after the impact, velocity half a step later
-  Vector push;                                 // C^T p of the mass
-};
-
 /// Marches a state in time. Everything that depends on the step is made once per halving level and kept.
 class Stepper {
  public:
@@ -81,7 +62,7 @@ class Stepper {
   /// needs none: that of its state is empty). With the ledger of a stage before, energies go on counting, and so does its acceleration when
   /// it is the same scheme's.
   void start(State state, const Ledger* before = nullptr);
-  Ledger ledger() const { return {energies_, initial_energy_, largest_external_, !path_, kick_.step > 0 ? kick_ : Kick()}; }
+  Ledger ledger() const { return {energies_, initial_energy_, largest_external_, !path_, impacts_ != nullptr ? impacts_->kick() : Kick()}; }
   /// Goes on where another Stepper of the same stage has been: takes the place of `start`. After `reenter` of that one both take the same
   /// steps to the last bit.
   void resume(MarchState from);
@@ -112,23 +93,24 @@ class Stepper {
   /// Largest external work met [J], for the scale of the energy error.
   double largest_external() const { return largest_external_; }
   double initial_energy() const { return initial_energy_; }
-  /// Momentum that impacts of constraints transferred in the last step, per interface row [N s], compression < 0; empty without impacts.
-  const Vector& impact_impulse() const { return impact_impulse_; }
+  /// Impacts of constraints; null where there are none.
+  const ContactImpacts* impacts() const { return impacts_.get(); }
 
  private:
   struct Level;
   Level& level(int halving);
   Level& make_level(int halving);
+  void make_impact_factors(Level& level) const;
   bool try_step(Level& level);
   bool balance_step(Level& level);
   bool substep(int halving);
+  bool impacts_act() const { return impact_.acts() && !path_ && b_.rows() > 0; }
   /// Its factor of M is large: made when it is first asked for.
   const Accelerator& accelerator() const;
   void make_room();
+  void begin_acceleration();
   void follow_state();
   void force_at(double time, Vector& force) const;
-  void move_gap(double from, double to);
-  void move_rates(double time);
   /// ku = K u and mv = M v, in one pass where the bulk is large.
   void products(const Vector& u, const Vector& v, Vector& ku, Vector& mv) const;
   /// K u and M v at the end of the step, once it is solved.
@@ -143,51 +125,16 @@ class Stepper {
   Sparse matrix_of(const Level& level) const;
   OwnedSum upper_of(const Level& level) const;
   OwnedSum damped_mass(double w) const;
-  double velocity_weight(const Level& level) const;
   ContactModel frame_of(const Level& level) const;
   Outcome solve(Level& level);
-  void prepare_impacts();
-  bool select_pressed(const std::vector<Block>& blocks, const Vector& forces);
-  Impact impact_data(const Vector& force) const;
-  double end_share() const;
-  double contact_work(const Vector& end_force, const Vector& end_opening) const;
-  void apply_impact(Level& level);
-  bool strikes(const Impact& data);
-  bool apply_rule(const Level& level, Impact& data);
-  bool gap_closes() const;
-  void soften(const Level& level, Vector& acceleration);
-  void balance_damping(const Level& level, Impact& data, bool with_friction);
-  void damp_impact(const Level& level, const Vector& velocity, Vector& acceleration);
-  bool is_round_off(const Vector& change, const Vector& velocity);
-  void begin_kick(const Level& level);
-  void undo_kick();
-  void set_kick(const Ledger& from);
-  void prepare_friction(const std::vector<Block>& blocks);
-  struct PointWork;
-  PointWork point_work(const Block& block, int first, const InterfaceSolution& end) const;
-  double friction_given(const std::vector<Block>& blocks, const InterfaceSolution& end) const;
-  bool drop_creating();
-  void restore_dropped();
-  bool impact_of_friction(const Level& level, const Impact& data);
-  void separate_impulse(const Impact& data);
-  void read_forces(const Impact& data, bool with_friction);
-  void take_forces();
-  bool obey_friction(const Spread& spread, CoulombRates& law, const Impact& data, const Vector& velocity, Vector& acceleration);
-  void hold_initial_acceleration();
-  void release_parting();
-  bool select_closed(const std::vector<Block>& blocks);
-  bool project_initial(Impact& data, Vector& acceleration);
-  void slide_initially(const std::vector<Block>& blocks, Impact& data, const Vector& free);
   void book_energies(const Level& level);
   void forces_at(const State& state, Vector& result) const;
 
   const Model& model_;
   const Bulk& bulk_;
   const Sparse& b_;
-  const Vector& still_gap_;  // initial gaps
-  Vector still_force_;       // that do not change in the stage: StepOptions::held and the loads that never change [N, N m]
-  Vector gap_, gap_step_;    // with the prescribed motions at the end of the step, and their change in the step
-  Vector moved_velocity_, moved_acceleration_;  // rows: rates of the openings that prescribed motions make, at the same time [m/s, m/s2]
+  Vector still_force_;  // that do not change in the stage: StepOptions::held and the loads that never change [N, N m]
+  SupportMotion motion_;
   const Behaviours& behaviours_;
   const ContactMethod& method_;
   const ImpactRule& impact_;
@@ -196,13 +143,11 @@ class Stepper {
   LinearCounts& linear_;
   double failed_step_ = 0;
   long iterations_before_ = 0;  // of the interface, before this step
-  bool path_ = false, filtered_ = false, impacts_ = false, gap_moves_ = false;
+  bool path_ = false, filtered_ = false;
   std::shared_ptr<const SymmetricPair> pair_;         // K and M of large bulks
   mutable std::unique_ptr<Accelerator> accelerator_;  // null while it is not needed
   mutable std::string mass_failure_;                  // why no step can be taken: no factor of M where one is needed
-  std::unique_ptr<Spread> mass_spread_;
-  Vector row_area_;  // m2, of the point that a row belongs to
-  Matrix dense_b_;
+  std::unique_ptr<ContactImpacts> impacts_;           // null where none act
   Vector shift_;  // rows: D of the interface problem [N/m], for unknowns without mass that interfaces alone hold; empty without them
   std::vector<std::unique_ptr<Level>> levels_;
 
@@ -217,24 +162,10 @@ class Stepper {
   Vector force_now_, force_next_, stiff_now_, momentum_now_;  // f, K u, M v
   Vector stiff_next_, momentum_next_;                         // only filters ask for both ends: empty without them
   mutable Vector product_, balance_;                          // work space of forces_at and acceleration
-  Vector right_, increment_, work_, work2_, contact_, impulse_;
-  ImpactScratch impact_scratch_;
-  Vector impact_impulse_;     // rows: momentum that impacts transferred in the step [N s]
-  double closed_gap_ = 1e-9;  // m: what closes from a smaller gap is no impact
-  Vector pressed_;            // rows: area of the normal ones that are pressed, else 0 [m2]
-  std::vector<int> tangents_;
-  bool closing_ = false;  // a gap closes in the step
+  Vector right_, increment_, work_, work2_;
   Energies energies_;
   InterfaceEnergy interface_energy_;
-  BulkWork impact_work_{linear_};
-  Vector velocity_free_;                   // before an impact
-  Kick kick_, kick_next_;                  // of impacts at the beginning and at the end of the step
-  Kick unkicked_;                          // acceleration and force of now_ without it
-  Vector lag_;                             // free unknowns [N]: M a of the beginning with it, less the forces; empty without impacts
-  std::unique_ptr<CoulombRates> coulomb_;  // null without friction, and with other rules than project_hold
-  FrictionOfImpacts friction_;
-  double friction_step_ = 0;  // J: work of the friction of constraints in the step
-  double impact_loss_ = 0, initial_energy_ = 0, largest_external_ = 0;
+  double initial_energy_ = 0, largest_external_ = 0;
   double start_time_ = 0;  // s
   double last_step_ = 0;   // s: of the last part that succeeded; next_ is the state before it
   double origin_ = 0;      // J: what the balance is measured from; the initial energy unless a static stage came in between

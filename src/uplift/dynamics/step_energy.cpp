@@ -23,17 +23,18 @@ void Stepper::book_energies(const Level& level) {
     external = sums[0], strain = sums[1], kinetic = sums[2];
   });
   energies_.external += 0.5 * external;
-  if (gap_moves_ && path_) energies_.external += next_.mean_force.dot(gap_step_);  // what moving supports put in through the interfaces
+  if (motion_.acts() && path_)
+    energies_.external += next_.mean_force.dot(motion_.change());  // what moving supports put in through the interfaces
   if (!bulk_.damping.zero()) {
     // work of the damping force, mean of both ends; average acceleration: C du/dt . du, with the velocity before an impact at the end
-    if (path_ || (impacts_ && options_.scheme.average_acceleration()))
+    if (path_ || (impacts_ != nullptr && options_.scheme.average_acceleration()))
       for (Eigen::Index i = 0; i < n; ++i) work_[i] = du[i] / level.step;
     else
       for (Eigen::Index i = 0; i < n; ++i) work_[i] = 0.5 * (now_.velocity[i] + next_.velocity[i]);
     bulk_.damping.multiply(work_, work2_);
     energies_.damping += small::dot(n, work2_.data(), du);
   }
-  if (kick_.step > 0) impact_loss_ -= 0.5 * small::dot(n, lag_.data(), du);
+  if (impacts_ != nullptr) energies_.impact -= impacts_->lag_work(increment_);
   energies_.kinetic = 0.5 * kinetic;
   energies_.strain = 0.5 * strain;
   if (newton_ != nullptr) {
@@ -46,9 +47,7 @@ void Stepper::book_energies(const Level& level) {
   else
     interface_energy_.update(last_->model->blocks, next_.opening, next_.history);
   energies_.stored = interface_energy_.stored;
-  if (!path_) energies_.friction += friction_step_;  // of constraints
   energies_.interface_dissipated = interface_energy_.dissipated + energies_.friction;
-  energies_.impact = impact_loss_;
   if (filtered_) advance_filters(level);
   energies_.residual = energies_.sum() - origin_;
   largest_external_ = std::max(largest_external_, std::abs(energies_.external));

@@ -16,20 +16,11 @@ Stepper::Level& Stepper::make_level(int halving) {
   auto& slot = levels_[static_cast<std::size_t>(halving)];
   slot = std::make_unique<Level>();
   Level& made = *slot;
-  const Scheme& s = options_.scheme;
   made.step = options_.step / std::pow(2.0, halving);
-  const double dt = made.step * s.stretch(), w = 1 - s.alpha_f;
-  made.damping = s.gamma / (s.beta * dt);
-  made.mass = (1 - s.alpha_m) / (w * s.beta * dt * dt);
-  made.share = 1 / s.stretch();
-  made.mass_velocity = (1 - s.alpha_m) / (w * s.beta * dt);
-  made.mass_acceleration = ((1 - s.alpha_m) * (1 / (2 * s.beta) - 1) - s.alpha_m) / w;
-  made.damping_velocity = 1 - s.gamma / s.beta + s.alpha_f / w;
-  made.damping_acceleration = dt * (1 - s.gamma / (2 * s.beta));
-
+  made.weights = weights_of(options_.scheme, made.step);
   ContactModel frame = frame_of(made);
   if (options_.monolithic) {
-    made.solver = make_monolithic(matrix_of(made), b_, gap_, std::move(frame));
+    made.solver = make_monolithic(matrix_of(made), b_, motion_.gap(), std::move(frame));
     ++linear_.factorisations;
   } else {
     // Yielding solids halve steps often. The matrices of all lengths have their entries in the same places: one symbolic analysis serves
@@ -43,34 +34,41 @@ Stepper::Level& Stepper::make_level(int halving) {
       return made;
     }
     std::unique_ptr<StepSolver> oracle;
-    if (options_.oracle_tolerance > 0) oracle = make_monolithic(matrix_of(made), b_, gap_, frame);
-    made.solver = std::make_unique<Condensed>(model_, b_, gap_, gap_moves_, std::move(factor), std::move(frame), method_, linear_);
+    if (options_.oracle_tolerance > 0) oracle = make_monolithic(matrix_of(made), b_, motion_.gap(), frame);
+    made.solver =
+        std::make_unique<Condensed>(model_, b_, motion_.gap(), motion_.acts(), std::move(factor), std::move(frame), method_, linear_);
     if (oracle != nullptr)
       made.solver = make_compared(matrix_of(made), std::move(made.solver), std::move(oracle), options_.oracle_tolerance);
   }
-  const auto spread_by = [&](const OwnedSum& matrix, std::unique_ptr<Spread>& spread) {
-    made.impact_factor = std::make_unique<BulkFactor>(matrix, &b_, bulk_.small, solver_, model_, linear_);
-    if (!made.impact_factor->ok()) made.why = "the matrix of impacts: " + made.impact_factor->why();
-    made.hopeless = made.impact_factor->too_large();
-    if (made.why.empty()) spread = std::make_unique<Spread>(made.impact_factor->spread(b_, linear_));
-  };
-  if (impacts_ && impact_.needs_dynamic()) spread_by(bulk_.upper(1, 0, 4 / (dt * dt)), made.dynamic);
-  const bool damped = impacts_ && impact_.holds_acceleration() && !bulk_.damping.zero();
-  if (damped && !s.average_acceleration() && made.solver->factor() == nullptr) {
-    made.impact_factor = std::make_unique<BulkFactor>(upper_of(made), &b_, bulk_.small, solver_, model_, linear_);
-    made.why = made.impact_factor->why();
-  }
-  if (damped && s.average_acceleration()) {
-    spread_by(damped_mass(velocity_weight(made)), made.impact);
-    const std::vector<Block> blocks = blocks_of(model_, behaviours_).blocks;
-    if (made.impact != nullptr && any_friction(blocks)) made.coulomb = std::make_unique<CoulombRates>(blocks, made.impact->factor);
-  }
+  if (impacts_act()) make_impact_factors(made);
   return made;
 }
 
-/// A force p at the end of a step puts -w M^-1 B^T p into the velocity [s].
-double Stepper::velocity_weight(const Level& level) const {
-  return options_.scheme.gamma * level.step * (1 - options_.scheme.alpha_f) / (1 - options_.scheme.alpha_m);
+/// A matrix that cannot be factorised is the failure of the step size.
+void Stepper::make_impact_factors(Level& level) const {
+  const Scheme& s = options_.scheme;
+  ImpactFactors& made = level.impacts;
+  made.step = level.step;
+  made.mass = level.weights.mass;
+  const auto spread_by = [&](const OwnedSum& matrix, std::unique_ptr<Spread>& spread) {
+    made.factor = std::make_unique<BulkFactor>(matrix, &b_, bulk_.small, solver_, model_, linear_);
+    if (!made.factor->ok()) level.why = "the matrix of impacts: " + made.factor->why();
+    level.hopeless = made.factor->too_large();
+    if (level.why.empty()) spread = std::make_unique<Spread>(made.factor->spread(b_, linear_));
+  };
+  if (impact_.needs_dynamic()) spread_by(bulk_.upper(1, 0, 4 / (level.step * level.step)), made.dynamic);
+  if (!impact_.holds_acceleration() || bulk_.damping.zero()) return;
+  if (!s.average_acceleration()) {
+    made.effective = level.solver->factor();
+    if (made.effective != nullptr) return;
+    made.factor = std::make_unique<BulkFactor>(upper_of(level), &b_, bulk_.small, solver_, model_, linear_);
+    made.effective = made.factor.get();
+    level.why = made.factor->why();
+    return;
+  }
+  spread_by(damped_mass(s.velocity_weight(level.step)), made.damped);
+  const std::vector<Block> blocks = blocks_of(model_, behaviours_).blocks;
+  if (made.damped != nullptr && any_friction(blocks)) made.coulomb = std::make_unique<CoulombRates>(blocks, made.damped->factor);
 }
 
 /// M + w D, with a trace of mass where there is none and perhaps no damping either.
@@ -102,8 +100,8 @@ Vector Stepper::stiffness_for_massless() const {
 
 Sparse Stepper::matrix_of(const Level& level) const {
   assert(!bulk_.distributed());
-  Sparse linear = bulk_.stiffness_matrix + level.damping * bulk_.damping_matrix + level.mass * bulk_.mass_matrix;
-  if (shift_.size() > 0) linear += b_.transpose() * shift_.asDiagonal() * b_;
+  Sparse linear = bulk_.stiffness_matrix + level.weights.damping * bulk_.damping_matrix + level.weights.mass * bulk_.mass_matrix;
+  if (shift_.size() > 0) linear += joint_stiffness(b_, shift_);
   if (!filtered_ || bulk_.geometric == nullptr) return linear;
   return linear - (1 - 1 / options_.scheme.stretch()) * *bulk_.geometric;  // the geometric stiffness is not filtered
 }
@@ -112,9 +110,9 @@ Sparse Stepper::matrix_of(const Level& level) const {
 OwnedSum Stepper::upper_of(const Level& level) const {
   const bool unfiltered = filtered_ && bulk_.geometric != nullptr;
   if (!bulk_.distributed() && (shift_.size() > 0 || unfiltered)) return {matrix_of(level).triangularView<upper_triangle>(), {}};
-  OwnedSum sum = bulk_.upper(1, level.damping, level.mass);
+  OwnedSum sum = bulk_.upper(1, level.weights.damping, level.weights.mass);
   if (!bulk_.distributed()) return sum;
-  if (shift_.size() > 0) sum.here += Sparse(Sparse(b_.transpose() * shift_.asDiagonal() * b_).triangularView<upper_triangle>());
+  if (shift_.size() > 0) sum.here += Sparse(joint_stiffness(b_, shift_).triangularView<upper_triangle>());
   if (unfiltered) sum.here -= Sparse((1 - 1 / options_.scheme.stretch()) * bulk_.geometric->triangularView<upper_triangle>());
   return sum;
 }

@@ -51,8 +51,8 @@ void Runner::look_over_bases() {
 
 /// Momentum that impacts of constraints transferred in the last step, of each interface.
 void Runner::note_impulses(const Stepper& stepper) {
-  const Vector& impulse = stepper.impact_impulse();
-  if (impulse.size() == 0) return;
+  if (stepper.impacts() == nullptr) return;
+  const Vector& impulse = stepper.impacts()->transferred();
   Index first = 0;
   for (std::size_t k = 0; k < model_.interfaces.size(); ++k) {
     const Batch& batch = model_.interfaces[k].batch;

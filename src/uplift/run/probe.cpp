@@ -32,9 +32,8 @@ ContactModel with_compliance(ContactModel contact, const SymmetricSum& matrix, c
 
 ContactModel probe(const Model& model, const Bulk& bulk, const Sparse& b, const Stage& stage, const LinearSolver& solver,
                    LinearCounts& counts, std::string& why) {
-  const Scheme& s = stage.scheme;
-  const double w = 1 - s.alpha_f, dt = stage.step * s.stretch();
-  const OwnedSum matrix = bulk.upper(1, s.gamma / (s.beta * dt), (1 - s.alpha_m) / (w * s.beta * dt * dt));
+  const StepWeights weights = weights_of(stage.scheme, stage.step);
+  const OwnedSum matrix = bulk.upper(1, weights.damping, weights.mass);
   ContactModel contact = blocks_of(model, Behaviours(model, NoContact(), nullptr));
   contact.step = stage.step;
   return with_compliance(std::move(contact), matrix, b, model, bulk, solver, counts, why);
@@ -45,8 +44,8 @@ ContactModel static_probe(const Model& model, const LinearSolver& solver, Linear
   const Sparse b = stack_interfaces(model);
   const Behaviours behaviours(model, NoContact(), nullptr);
   OwnedSum matrix = bulk.upper(1, 0, 0);
-  matrix.here += Sparse(
-      Sparse(b.transpose() * closed_joint(model, bulk.stiffness_matrix, b, behaviours).asDiagonal() * b).triangularView<upper_triangle>());
+  const Vector joint = closed_joint(model, bulk.stiffness_matrix, b, behaviours);
+  matrix.here += Sparse(joint_stiffness(b, joint).triangularView<upper_triangle>());
   return with_compliance(blocks_of(model, behaviours), matrix, b, model, bulk, solver, counts, why);
 }
 

@@ -150,7 +150,8 @@ struct RockingBlock {
     impact.b = &b;
     const Vector pressed = (Vector(4) << 0, 0, 1, 1).finished();
     impact.pressed = &pressed;
-    if (friction) impact.tangents = {0, 1};
+    const std::vector<int> sticking{0, 1};
+    if (friction) impact.tangents = sticking;
     impact.velocity_weight = 1e-3;
     Vector force = Vector::Zero(4);
     force[2] = -contained / impact.velocity_weight;

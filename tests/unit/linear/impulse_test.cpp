@@ -32,11 +32,13 @@ Corrected apply(const char* rule, const Spread& mass, const Spread& dynamic, con
   impact.velocity_weight = 1e-3;
   Vector pressed = Vector::Zero(rows);
   impact.pressed = &pressed;
+  std::vector<int> sticking;
   for (int p = 0; p < points; ++p)
     if (force[points + p] < 0) {
       pressed[points + p] = boxes.area[points + p];
-      if (p % 3 == 0) impact.tangents.push_back(p);
+      if (p % 3 == 0) sticking.push_back(p);
     }
+  impact.tangents = sticking;
   Corrected result{velocity, acceleration, Vector::Zero(rows)};
   ImpactScratch scratch;
   impact_rule->apply(impact, result.velocity, result.impulse, scratch);

@@ -19,7 +19,7 @@ struct Impact {
   // all rows: weight of the active normal rows (compressed), 0 elsewhere: the area of the row's point [m2], by which redundant impulses are
   // shared, or all alike
   const Vector* pressed = nullptr;
-  std::vector<int> tangents;      // sticking tangential rows: equalities
+  std::span<const int> tangents;  // sticking tangential rows: equalities
   const Vector* force = nullptr;  // all rows: contact force at the end of the step [N], tension > 0
   const Vector* area = nullptr;   // all rows: the same weight, for the tangents; null: all alike
   double velocity_weight = 0;     // gamma * dt [s]: a force p at the end of the step put -velocity_weight * M^-1 B^T p into the velocity
