@@ -54,7 +54,7 @@ void measure(double size, Setup kind) {
   StepOptions options;
   options.step = 2e-3;
   options.scheme = *make_part(scheme_catalog(), part(schemes(), "average_acceleration", {}));
-  Stepper stepper(model, bulk, b, gap, behaviours, *method, *impact, *solver, options, counts);
+  Stepper stepper({model, bulk, b, gap}, {behaviours, *method}, *impact, *solver, options, counts);
   stepper.start(state);
   stepper.advance();
   const double t_first = lap();

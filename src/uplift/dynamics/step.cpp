@@ -7,8 +7,7 @@
 #include <utility>
 
 #include "uplift/contact/unheld.h"
-#include "uplift/dynamics/monolithic.h"
-#include "uplift/dynamics/step_level.h"
+#include "uplift/dynamics/step.h"
 #include "uplift/math/small.h"
 
 namespace uplift {
@@ -31,54 +30,54 @@ void exchange(State& now, State& next) {
   now.history.swap(next.history);
 }
 
-}  // namespace
-
-Stepper::Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Vector& gap, const Behaviours& behaviours,
-                 const ContactMethod& method, const ImpactRule& impact, const LinearSolver& solver, const StepOptions& options,
-                 LinearCounts& counts)
-    : model_(model),
-      bulk_(bulk),
-      b_(b),
-      motion_(model, gap),
-      behaviours_(behaviours),
-      method_(method),
-      impact_(impact),
-      solver_(solver),
-      options_(options),
-      linear_(counts),
-      path_(options.path_average && options.scheme.average_acceleration() && !method.constrains()),
-      filtered_(path_ && options.scheme.filtered()),
-      yielding_(model) {
-  still_force_ = options.held != nullptr ? *options.held : Vector(Vector::Zero(bulk.unknowns));
-  model.add_constant_force(still_force_);
-  if (!filtered_) options_.scheme.gain = 0;  // constraints: the trapezoidal rule, whose impacts have rules of their own
-  if (filtered_ && b.rows() > 0) joint_filter_ = std::make_unique<JointFilter>(model, behaviours, options.scheme);
-  if (!options.monolithic) shift_ = stiffness_for_massless();
-  levels_.resize(static_cast<std::size_t>(options.halvings) + 1);
-  // Two factors are kept: the one of the step, which needs the most room while it is made, comes first. One that is needed for the
-  // acceleration of the beginning alone comes and goes before it (start).
-  if (path_ || impacts_act()) level(0);
-  if (impacts_act() && accelerator().why().empty())
-    impacts_ = std::make_unique<ContactImpacts>(
-        impact_, options_.scheme, bulk_, ContactRows(model_, bulk_, b_, motion_, accelerator().spread(b_)),
-        blocks_of(model_, behaviours_).blocks, [this](const State& state, Vector& forces) { forces_at(state, forces); }, linear_);
-  if (yielding_.any()) newton_ = std::make_unique<PlasticNewton>(yielding_, bulk.stiffness_matrix.diagonal(), options.plastic);
+/// With the path average and the filters of the scheme only where they apply. Constraints: the trapezoidal rule, whose impacts have rules
+/// of their own.
+StepOptions in_use(StepOptions options, const ContactMethod& method) {
+  options.path_average = options.path_average && options.scheme.average_acceleration() && !method.constrains();
+  if (!options.path_average) options.scheme.gain = 0;
+  return options;
 }
 
-Stepper::~Stepper() = default;
+}  // namespace
+
+Stepper::Stepper(const StageModel& stage, const ContactChoice& contact, const ImpactRule& impact, const LinearSolver& solver,
+                 const StepOptions& options, LinearCounts& counts)
+    : stage_(stage),
+      contact_(contact),
+      solver_(solver),
+      options_(in_use(options, contact.method)),
+      linear_(counts),
+      path_(options_.path_average),
+      filtered_(options_.scheme.filtered()),
+      impact_(impact.acts() && !path_ && stage.b.rows() > 0 ? &impact : nullptr),
+      motion_(stage.model, stage.gap),
+      sizes_(stage_, contact, impact_, motion_, solver, options_, counts),
+      yielding_(stage.model) {
+  still_force_ = options.held != nullptr ? *options.held : Vector(Vector::Zero(stage.bulk.unknowns));
+  stage.model.add_constant_force(still_force_);
+  if (filtered_ && stage.b.rows() > 0) joint_filter_ = std::make_unique<JointFilter>(stage.model, contact.laws, options_.scheme);
+  // Two factors are kept: the one of the step, which needs the most room while it is made, comes first. One that is needed for the
+  // acceleration of the beginning alone comes and goes before it (start).
+  if (path_ || impact_ != nullptr) sizes_.at(0);
+  if (impact_ != nullptr && accelerator().why().empty())
+    impacts_ = std::make_unique<ContactImpacts>(
+        *impact_, options_.scheme, stage.bulk, ContactRows(stage.model, stage.bulk, stage.b, motion_, accelerator().spread(stage.b)),
+        blocks_of(stage.model, contact.laws).blocks, [this](const State& state, Vector& forces) { forces_at(state, forces); }, counts);
+  if (yielding_.any()) newton_ = std::make_unique<PlasticNewton>(yielding_, stage.bulk.stiffness_matrix.diagonal(), options.plastic);
+}
 
 const Accelerator& Stepper::accelerator() const {
   if (accelerator_ == nullptr) {
     solver_.wait_for_room();
-    accelerator_ = std::make_unique<Accelerator>(model_, bulk_, impacts_act() ? &b_ : nullptr, solver_, linear_);
-    if (impacts_act() || accelerator_->too_large()) mass_failure_ = accelerator_->why();
+    accelerator_ = std::make_unique<Accelerator>(stage_.model, stage_.bulk, impact_ != nullptr ? &stage_.b : nullptr, solver_, linear_);
+    if (impact_ != nullptr || accelerator_->too_large()) mass_failure_ = accelerator_->why();
   }
   return *accelerator_;
 }
 
 /// The displacement increment: by the linear step, or by the outer Newton around it.
-Outcome Stepper::solve(Level& level) {
-  StepSolver* last = level.solver.get();
+Outcome Stepper::solve(StepSize& size) {
+  StepSolver* last = size.solver.get();
   StepStart start{now_.displacement, now_.opening, now_.history};
   if (joint_filter_ != nullptr) {
     joint_filter_->begin(last->filter());
@@ -89,18 +88,8 @@ Outcome Stepper::solve(Level& level) {
     solution_ = &last->solution();
     return last->solve(right_, start, increment_);
   }
-  const PlasticNewton::Make soften = [&](const Sparse& d, std::string& why) -> std::unique_ptr<StepSolver> {
-    if (options_.monolithic) return make_monolithic(matrix_of(level) + d, b_, motion_.gap(), frame_of(level));
-    OwnedSum matrix = upper_of(level);
-    matrix.here += Sparse(d.triangularView<upper_triangle>());
-    auto factor = std::make_shared<const BulkFactor>(matrix, &b_, bulk_.small, solver_, model_, linear_,
-                                                     level.tangent != nullptr ? level.tangent.get() : level.solver->factor());
-    why = factor->why();
-    if (!factor->ok()) return nullptr;
-    level.tangent = factor;
-    return std::make_unique<Condensed>(model_, b_, motion_.gap(), motion_.acts(), std::move(factor), frame_of(level), method_, linear_);
-  };
-  Outcome outcome = newton_->solve({right_, start, plastic_now_, next_.time, 1 / options_.scheme.stretch(), level.step}, *last, soften,
+  const PlasticNewton::Make soften = [&](const Sparse& d, std::string& why) { return sizes_.softened(size, d, why); };
+  Outcome outcome = newton_->solve({right_, start, plastic_now_, next_.time, 1 / options_.scheme.stretch(), size.step}, *last, soften,
                                    increment_, plastic_next_);
   last = &newton_->last();
   last_ = &last->problem();
@@ -112,21 +101,21 @@ void Stepper::force_at(double time, Vector& force) const {
   const double* still = still_force_.data();
   double* sum = force.data();
   small::with_size(still_force_.size(), [=](auto count) { std::copy_n(still, static_cast<Eigen::Index>(count), sum); });
-  model_.add_varying_force(time, force);
+  stage_.model.add_varying_force(time, force);
   if (options_.second_order != nullptr)
     for (const TimeLoad& time_load : *options_.second_order) force += time_load.factor(time) * time_load.shape;
 }
 
 void Stepper::forces_at(const State& state, Vector& result) const {  // f - C v - K u - r - B^T p; r is that of now_
   force_at(state.time, result);
-  product_.resize(bulk_.unknowns);
-  bulk_.damping.multiply(state.velocity, product_);
+  product_.resize(stage_.bulk.unknowns);
+  stage_.bulk.damping.multiply(state.velocity, product_);
   result -= product_;
-  bulk_.stiffness.multiply(state.displacement, product_);
+  stage_.bulk.stiffness.multiply(state.displacement, product_);
   result -= product_;
   if (newton_ != nullptr) result -= plastic_now_.force;
-  if (b_.rows() == 0) return;
-  product_.noalias() = b_.transpose() * state.force;
+  if (stage_.b.rows() == 0) return;
+  product_.noalias() = stage_.b.transpose() * state.force;
   result -= product_;
 }
 
@@ -135,13 +124,13 @@ void Stepper::acceleration(Vector& result) const {
     result = now_.acceleration;
     return;
   }
-  result.resize(bulk_.unknowns);
+  result.resize(stage_.bulk.unknowns);
   if (averages_acceleration() && counts_.steps > 0) {
     const bool divided = last_step_ > 0 && last_step_ < options_.step;
     result = (now_.velocity - (divided ? velocity_before_ : next_.velocity)) / options_.step;
     return;
   }
-  balance_.resize(bulk_.unknowns);
+  balance_.resize(stage_.bulk.unknowns);
   forces_at(now_, balance_);
   accelerator().solve(balance_, result);
 }
@@ -157,19 +146,19 @@ void Stepper::products(const Vector& u, const Vector& v, Vector& ku, Vector& mv)
     pair_->multiply(u, v, ku, mv);
     return;
   }
-  bulk_.stiffness.multiply(u, ku);
-  bulk_.mass.multiply(v, mv);
+  stage_.bulk.stiffness.multiply(u, ku);
+  stage_.bulk.mass.multiply(v, mv);
 }
 
-void Stepper::right_hand_side(const Level& level) {
+void Stepper::right_hand_side(const StepSize& size) {
   const double* f0 = force_now_.data();
   const double* f1 = force_next_.data();
   const double* ku = stiff_now_.data();
   double* right = right_.data();
-  const Eigen::Index n = bulk_.unknowns;
+  const Eigen::Index n = stage_.bulk.unknowns;
   if (filtered_) {
     const double *mv = momentum_now_.data(), *filtered_stiff = filtered_stiff_.data(), *filtered_momentum = filtered_momentum_.data();
-    const double w = level.weights.share, gain = options_.scheme.gain, inertia = level.weights.mass_velocity;
+    const double w = size.weights.share, gain = options_.scheme.gain, inertia = size.weights.mass_velocity;
     small::with_size(n, [=](auto count) {
 #pragma omp simd
       for (Eigen::Index i = 0; i < count; ++i)
@@ -180,7 +169,7 @@ void Stepper::right_hand_side(const Level& level) {
   }
   if (path_) {
     const double* mv = momentum_now_.data();
-    const double inertia = level.weights.mass_velocity;  // 4/dt
+    const double inertia = size.weights.mass_velocity;  // 4/dt
     small::with_size(n, [=](auto count) {
 #pragma omp simd
       for (Eigen::Index i = 0; i < count; ++i) right[i] = f0[i] + f1[i] - 2 * ku[i] + inertia * mv[i];
@@ -189,7 +178,7 @@ void Stepper::right_hand_side(const Level& level) {
     return;
   }
   const double w = 1 - options_.scheme.alpha_f, ratio = options_.scheme.alpha_f / w;
-  const double of_velocity = level.weights.mass_velocity, of_acceleration = level.weights.mass_acceleration;
+  const double of_velocity = size.weights.mass_velocity, of_acceleration = size.weights.mass_acceleration;
   const double *v0 = now_.velocity.data(), *a0 = now_.acceleration.data();
   double* work = work_.data();
   small::with_size(n, [=](auto count) {
@@ -199,31 +188,31 @@ void Stepper::right_hand_side(const Level& level) {
       work[i] = of_velocity * v0[i] + of_acceleration * a0[i];
     }
   });
-  bulk_.mass.multiply(work_, work2_);
+  stage_.bulk.mass.multiply(work_, work2_);
   right_ += work2_;
-  if (!bulk_.damping.zero()) {
+  if (!stage_.bulk.damping.zero()) {
     for (Eigen::Index i = 0; i < n; ++i)
-      work_[i] = level.weights.damping_velocity * now_.velocity[i] + level.weights.damping_acceleration * now_.acceleration[i];
-    bulk_.damping.multiply(work_, work2_);
+      work_[i] = size.weights.damping_velocity * now_.velocity[i] + size.weights.damping_acceleration * now_.acceleration[i];
+    stage_.bulk.damping.multiply(work_, work2_);
     right_ -= work2_;
   }
   if (newton_ != nullptr && ratio != 0) right_ -= ratio * plastic_now_.force;
-  if (ratio == 0 || b_.rows() == 0) return;
-  work_.noalias() = b_.transpose() * now_.force;
+  if (ratio == 0 || stage_.b.rows() == 0) return;
+  work_.noalias() = stage_.b.transpose() * now_.force;
   right_ -= ratio * work_;
 }
 
 /// Displacement, velocity and acceleration at the end of the step; false when they are not finite.
-bool Stepper::kinematics(const Level& level) {
-  const double dt = level.step;
+bool Stepper::kinematics(const StepSize& size) {
+  const double dt = size.step;
   const Scheme& s = options_.scheme;
   const double* du = increment_.data();
   const double *u0 = now_.displacement.data(), *v0 = now_.velocity.data(), *a0 = now_.acceleration.data();
   double *u1 = next_.displacement.data(), *v1 = next_.velocity.data(), *a1 = next_.acceleration.data();
-  double size = 0;
+  double norm2 = 0;
   if (filtered_) {
-    const double *filtered = now_.filter.velocity.data(), gain = s.gain, rate = 1 / dt, inverse = 2 * level.weights.share;
-    small::with_size(bulk_.unknowns, [=, &size](auto count) {
+    const double *filtered = now_.filter.velocity.data(), gain = s.gain, rate = 1 / dt, inverse = 2 * size.weights.share;
+    small::with_size(stage_.bulk.unknowns, [=, &norm2](auto count) {
       double sum = 0;
 #pragma omp simd reduction(+ : sum)
       for (Eigen::Index i = 0; i < count; ++i) {
@@ -231,13 +220,13 @@ bool Stepper::kinematics(const Level& level) {
         v1[i] = v0[i] + inverse * (rate * du[i] - v0[i] + gain * filtered[i]);
         sum += du[i] * du[i];
       }
-      size = sum;
+      norm2 = sum;
     });
-    return std::isfinite(size);
+    return std::isfinite(norm2);
   }
   if (path_) {
-    const double rate = 0.5 * level.weights.mass_velocity;  // 2/dt
-    small::with_size(bulk_.unknowns, [=, &size](auto count) {
+    const double rate = 0.5 * size.weights.mass_velocity;  // 2/dt
+    small::with_size(stage_.bulk.unknowns, [=, &norm2](auto count) {
       double sum = 0;
 #pragma omp simd reduction(+ : sum)
       for (Eigen::Index i = 0; i < count; ++i) {
@@ -245,12 +234,12 @@ bool Stepper::kinematics(const Level& level) {
         v1[i] = rate * du[i] - v0[i];
         sum += du[i] * du[i];
       }
-      size = sum;
+      norm2 = sum;
     });
-    return std::isfinite(size);
+    return std::isfinite(norm2);
   }
   const double inertia = s.beta * dt * dt, before = 1 / (2 * s.beta) - 1, gamma = s.gamma;
-  small::with_size(bulk_.unknowns, [=, &size](auto count) {
+  small::with_size(stage_.bulk.unknowns, [=, &norm2](auto count) {
     double sum = 0;
 #pragma omp simd reduction(+ : sum)
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -259,53 +248,54 @@ bool Stepper::kinematics(const Level& level) {
       v1[i] = v0[i] + dt * ((1 - gamma) * a0[i] + gamma * a1[i]);
       sum += du[i] * du[i];
     }
-    size = sum;
+    norm2 = sum;
   });
-  return std::isfinite(size);
+  return std::isfinite(norm2);
 }
 
 /// The displacement at the end of the step. Forces at its beginning that would create energy are left out, as far as there is a solution
 /// without them.
-bool Stepper::balance_step(Level& level) {
+bool Stepper::balance_step(StepSize& size) {
   for (int reductions = 0;; ++reductions) {
-    right_hand_side(level);
-    if (shift_.size() > 0) right_ -= b_.transpose() * shift_.cwiseProduct(motion_.gap() + b_ * now_.displacement).eval();
-    const Outcome outcome = solve(level);
+    right_hand_side(size);
+    if (sizes_.shift().size() > 0)
+      right_ -= stage_.b.transpose() * sizes_.shift().cwiseProduct(motion_.gap() + stage_.b * now_.displacement).eval();
+    const Outcome outcome = solve(size);
     counts_.iterations += outcome.iterations;
     counts_.cycles += outcome.cycles;
     if (outcome.converged) {
       if (impacts_ == nullptr || !impacts_->drop_creating(last_->model->blocks, now_, *solution_, energies_,
                                                           std::max(largest_external_, std::abs(initial_energy_))))
         return true;
-      if (reductions == 0) level.increment = increment_, level.plastic = plastic_next_, level.solution = *solution_;
+      if (reductions == 0) first_try_.increment = increment_, first_try_.plastic = plastic_next_, first_try_.solution = *solution_;
       if (reductions < most_reductions) continue;
     }
     why_ = outcome.converged ? fmt::format("forces at the beginning of the step give energy back after {} reductions", most_reductions)
                              : outcome.why;
-    if (reductions == 0 || level.step > smallest_share * options_.step) return false;
+    if (reductions == 0 || size.step > smallest_share * options_.step) return false;
     if (impacts_ != nullptr) impacts_->restore_dropped(now_);
-    increment_ = level.increment, plastic_next_ = level.plastic, solution_ = &level.solution;
+    increment_ = first_try_.increment, plastic_next_ = first_try_.plastic, solution_ = &first_try_.solution;
     return true;
   }
 }
 
-bool Stepper::try_step(Level& level) {
-  if (!mass_failure_.empty() || !level.why.empty()) {
-    why_ = mass_failure_.empty() ? level.why : "the mass matrix: " + mass_failure_;
+bool Stepper::try_step(StepSize& size) {
+  if (!mass_failure_.empty() || !size.why.empty()) {
+    why_ = mass_failure_.empty() ? size.why : "the mass matrix: " + mass_failure_;
     return false;
   }
-  if (filtered_ && now_.filter.step > level.step) shorten_filters(level.step);
-  next_.time = now_.time + level.step;
+  if (filtered_ && now_.filter.step > size.step) shorten_filters(size.step);
+  next_.time = now_.time + size.step;
   force_at(next_.time, force_next_);
   if (motion_.acts()) motion_.go(now_.time, next_.time);
   if (motion_.acts() && impacts_ != nullptr) motion_.set_rates(next_.time);
-  if (!balance_step(level)) return false;
+  if (!balance_step(size)) return false;
   const InterfaceSolution& solution = *solution_;
-  if (shift_.size() > 0) {
+  if (sizes_.shift().size() > 0) {
     why_ = unheld_motion(*last_, solution, runaway_ratio);
     if (!why_.empty()) return false;
   }
-  if (!kinematics(level)) {
+  if (!kinematics(size)) {
     why_ = "the displacement is not finite";
     return false;
   }
@@ -336,7 +326,7 @@ bool Stepper::try_step(Level& level) {
     // what moving supports put in through the interfaces, by the forces that moved the step
     if (motion_.acts()) energies_.external += (1 - end) * now_.force.dot(motion_.change()) + end * next_.force.dot(motion_.change());
     if (impacts_ != nullptr) {
-      SolvedStep step{level.impacts, last_->model->blocks, now_, next_, momentum_end(), energies_, friction};
+      SolvedStep step{size.impacts, last_->model->blocks, now_, next_, momentum_end(), energies_, friction};
       impacts_->apply(step);
       energies_.friction += step.friction;
     } else {
@@ -348,7 +338,7 @@ bool Stepper::try_step(Level& level) {
 }
 
 bool Stepper::substep(int halving) {
-  Level& now = level(halving);
+  StepSize& now = sizes_.at(halving);
   if (impacts_ != nullptr) impacts_->begin_step(now_, now.step);
   if (try_step(now)) {
     book_energies(now);

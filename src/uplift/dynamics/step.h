@@ -4,29 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "uplift/dynamics/condensed.h"
-#include "uplift/dynamics/contact_impacts.h"
 #include "uplift/dynamics/joint_filter.h"
-#include "uplift/dynamics/plastic_newton.h"
-#include "uplift/dynamics/scheme.h"
 #include "uplift/dynamics/step_balance.h"
-#include "uplift/dynamics/support_motion.h"
+#include "uplift/dynamics/step_sizes.h"
 
 namespace uplift {
-
-/// How a dynamic stage marches.
-struct StepOptions {
-  Scheme scheme;
-  double step = 0;           // s
-  bool path_average = true;  // only with the average acceleration rule (filtered or not) and a method that does not constrain
-  int halvings = 8;
-  bool monolithic = false;       // the oracle: Newton on all unknowns instead of the condensed step
-  double oracle_tolerance = 0;   // > 0: every condensed step is also taken by the oracle; a larger relative difference fails it
-  const Vector* held = nullptr;  // constant forces beside those of the model [N, N m], free unknowns: what released supports have borne
-  // What prescribed motions do through the geometric stiffness of P-Delta; null: nothing
-  const std::vector<TimeLoad>* second_order = nullptr;
-  PlasticOptions plastic;
-};
 
 struct StepCounts {
   long steps = 0, retries = 0, iterations = 0, cycles = 0;
@@ -51,13 +33,11 @@ struct MarchState {
   std::vector<int> sizes;  // halvings whose matrices have been factorised
 };
 
-/// Marches a state in time. Everything that depends on the step is made once per halving level and kept.
+/// Marches a state in time.
 class Stepper {
  public:
-  Stepper(const Model& model, const Bulk& bulk, const Sparse& b, const Vector& gap, const Behaviours& behaviours,
-          const ContactMethod& method, const ImpactRule& impact, const LinearSolver& solver, const StepOptions& options,
-          LinearCounts& counts);
-  ~Stepper();
+  Stepper(const StageModel& stage, const ContactChoice& contact, const ImpactRule& impact, const LinearSolver& solver,
+          const StepOptions& options, LinearCounts& counts);
   /// Takes over displacement, velocity, opening and history; the initial acceleration follows from the balance (the path average
   /// needs none: that of its state is empty). With the ledger of a stage before, energies go on counting, and so does its acceleration when
   /// it is the same scheme's.
@@ -85,7 +65,7 @@ class Stepper {
   /// stiff joint makes that at its end alternate; else that at the end of the step (and before the first one), from the balance or the
   /// scheme.
   void acceleration(Vector& result) const;
-  bool averages_acceleration() const { return path_ && b_.rows() > 0; }
+  bool averages_acceleration() const { return path_ && stage_.b.rows() > 0; }
   /// The motion and forces that the last step balanced; valid until the next step. `start` is the acceleration before the first step.
   StepBalance balance(const Vector& start) const;
   /// Length of the last step that failed [s].
@@ -97,14 +77,9 @@ class Stepper {
   const ContactImpacts* impacts() const { return impacts_.get(); }
 
  private:
-  struct Level;
-  Level& level(int halving);
-  Level& make_level(int halving);
-  void make_impact_factors(Level& level) const;
-  bool try_step(Level& level);
-  bool balance_step(Level& level);
+  bool try_step(StepSize& size);
+  bool balance_step(StepSize& size);
   bool substep(int halving);
-  bool impacts_act() const { return impact_.acts() && !path_ && b_.rows() > 0; }
   /// Its factor of M is large: made when it is first asked for.
   const Accelerator& accelerator() const;
   void make_room();
@@ -116,41 +91,31 @@ class Stepper {
   /// K u and M v at the end of the step, once it is solved.
   Vector& stiff_end() { return filtered_ ? stiff_next_ : stiff_now_; }
   Vector& momentum_end() { return filtered_ ? momentum_next_ : momentum_now_; }
-  void right_hand_side(const Level& level);
-  Vector stiffness_for_massless() const;
+  void right_hand_side(const StepSize& size);
   void begin_filters();
   void shorten_filters(double step);
-  void advance_filters(const Level& level);
-  bool kinematics(const Level& level);
-  Sparse matrix_of(const Level& level) const;
-  OwnedSum upper_of(const Level& level) const;
-  OwnedSum damped_mass(double w) const;
-  ContactModel frame_of(const Level& level) const;
-  Outcome solve(Level& level);
-  void book_energies(const Level& level);
+  void advance_filters(const StepSize& size);
+  bool kinematics(const StepSize& size);
+  Outcome solve(StepSize& size);
+  void book_energies(const StepSize& size);
   void forces_at(const State& state, Vector& result) const;
 
-  const Model& model_;
-  const Bulk& bulk_;
-  const Sparse& b_;
-  Vector still_force_;  // that do not change in the stage: StepOptions::held and the loads that never change [N, N m]
-  SupportMotion motion_;
-  const Behaviours& behaviours_;
-  const ContactMethod& method_;
-  const ImpactRule& impact_;
+  const StageModel stage_;
+  const ContactChoice contact_;
   const LinearSolver& solver_;
-  StepOptions options_;
+  const StepOptions options_;
   LinearCounts& linear_;
+  const bool path_, filtered_;
+  const ImpactRule* const impact_;  // null where none acts
+  SupportMotion motion_;
+  StepSizes sizes_;
+  Vector still_force_;  // that do not change in the stage: StepOptions::held and the loads that never change [N, N m]
   double failed_step_ = 0;
-  long iterations_before_ = 0;  // of the interface, before this step
-  bool path_ = false, filtered_ = false;
+  long iterations_before_ = 0;                        // of the interface, before this step
   std::shared_ptr<const SymmetricPair> pair_;         // K and M of large bulks
   mutable std::unique_ptr<Accelerator> accelerator_;  // null while it is not needed
   mutable std::string mass_failure_;                  // why no step can be taken: no factor of M where one is needed
   std::unique_ptr<ContactImpacts> impacts_;           // null where none act
-  Vector shift_;  // rows: D of the interface problem [N/m], for unknowns without mass that interfaces alone hold; empty without them
-  std::vector<std::unique_ptr<Level>> levels_;
-
   PlasticBulk yielding_;
   std::unique_ptr<PlasticNewton> newton_;  // null without yielding solids
   PlasticState plastic_now_, plastic_next_;
@@ -172,7 +137,12 @@ class Stepper {
   StepCounts counts_;
   std::string why_;
   const InterfaceProblem* last_ = nullptr;
-  const InterfaceSolution* solution_ = nullptr;  // of the same solver
+  const InterfaceSolution* solution_ = nullptr;  // of the same solver, or first_try_'s
+  struct {                                       // with all forces of the beginning, while a solution without some of them is sought
+    Vector increment;
+    PlasticState plastic;
+    InterfaceSolution solution;
+  } first_try_;
 };
 
 }  // namespace uplift

@@ -2,7 +2,7 @@
 #include <utility>
 
 #include "uplift/dynamics/initial_contact.h"
-#include "uplift/dynamics/step_level.h"
+#include "uplift/dynamics/step.h"
 #include "uplift/linear/memory.h"
 
 // The beginning of a dynamic stage, or of a run that goes on: what follows from the state.
@@ -10,27 +10,27 @@ namespace uplift {
 
 /// Work space of the size of the bulk.
 void Stepper::make_room() {
-  const Eigen::Index n = bulk_.unknowns;
+  const Eigen::Index n = stage_.bulk.unknowns;
   for (Vector* v : {&force_now_, &force_next_, &stiff_now_, &momentum_now_, &right_, &increment_, &work_, &work2_}) v->setZero(n);
   if (filtered_) stiff_next_.setZero(n), momentum_next_.setZero(n);
 }
 
 /// The acceleration at the beginning, and contact forces of constraints that belong to it, from the balance.
 void Stepper::begin_acceleration() {
-  const std::vector<Block> blocks = blocks_of(model_, behaviours_).blocks;
+  const std::vector<Block> blocks = blocks_of(stage_.model, contact_.laws).blocks;
   if (motion_.acts()) motion_.set_rates(now_.time);
-  release_parting(blocks, b_, motion_, now_);
+  release_parting(blocks, stage_.b, motion_, now_);
   forces_at(now_, work_);
-  now_.acceleration.setZero(bulk_.unknowns);
+  now_.acceleration.setZero(stage_.bulk.unknowns);
   accelerator().solve(work_, now_.acceleration);
   const bool constrained = std::ranges::any_of(blocks, [](const Block& block) { return block.cone != nullptr; });
   if (impacts_ != nullptr && constrained) {
     hold_initial_acceleration(blocks, impacts_->rows(), now_);
   } else if (constrained && accelerator().why().empty()) {
-    ContactRows rows(model_, bulk_, b_, motion_, accelerator().spread(b_));
+    ContactRows rows(stage_.model, stage_.bulk, stage_.b, motion_, accelerator().spread(stage_.b));
     hold_initial_acceleration(blocks, rows, now_);
   }
-  if (!impacts_act()) accelerator_.reset();  // the factor is large, and the scheme carries accelerations on
+  if (impact_ == nullptr) accelerator_.reset();  // the factor is large, and the scheme carries accelerations on
 }
 
 void Stepper::start(State state, const Ledger* before) {
@@ -46,10 +46,10 @@ void Stepper::start(State state, const Ledger* before) {
   } else if (before == nullptr || !before->acceleration) {
     begin_acceleration();
   }
-  level(0);
-  if (!bulk_.small) {
+  sizes_.at(0);
+  if (!stage_.bulk.small) {
     give_back_free_memory();  // of the factorisation
-    pair_ = solver_.pair(bulk_.stiffness_matrix, bulk_.mass_matrix);
+    pair_ = solver_.pair(stage_.bulk.stiffness_matrix, stage_.bulk.mass_matrix);
   }
   const bool forgets = now_.filter.gain != options_.scheme.gain;  // what the filters of another scheme hold
   if (forgets) now_.filter = {};
@@ -75,7 +75,7 @@ void Stepper::follow_state() {
   next_ = now_;
   force_at(now_.time, force_now_);
   products(now_.displacement, now_.velocity, stiff_now_, momentum_now_);
-  interface_energy_.update(blocks_of(model_, behaviours_).blocks, now_.opening, now_.history);
+  interface_energy_.update(blocks_of(stage_.model, contact_.laws).blocks, now_.opening, now_.history);
 }
 
 State Stepper::whole_state() const {
@@ -85,19 +85,16 @@ State Stepper::whole_state() const {
 }
 
 MarchState Stepper::march_state() const {
-  MarchState march{whole_state(), ledger(), counts_, start_time_, origin_, {}};
-  for (std::size_t halving = 0; halving < levels_.size(); ++halving)
-    if (levels_[halving] != nullptr) march.sizes.push_back(static_cast<int>(halving));
-  return march;
+  return {whole_state(), ledger(), counts_, start_time_, origin_, sizes_.made()};
 }
 
 void Stepper::resume(MarchState from) {
   now_ = std::move(from.state);
   make_room();
-  for (const int halving : from.sizes) level(halving);
-  if (!bulk_.small) {
+  for (const int halving : from.sizes) sizes_.at(halving);
+  if (!stage_.bulk.small) {
     give_back_free_memory();
-    pair_ = solver_.pair(bulk_.stiffness_matrix, bulk_.mass_matrix);
+    pair_ = solver_.pair(stage_.bulk.stiffness_matrix, stage_.bulk.mass_matrix);
   }
   energies_ = from.ledger.energies;
   initial_energy_ = from.ledger.initial_energy;
@@ -110,8 +107,7 @@ void Stepper::resume(MarchState from) {
 }
 
 void Stepper::reenter() {
-  for (const std::unique_ptr<Level>& level : levels_)
-    if (level != nullptr && level->solver != nullptr) level->solver->forget();
+  sizes_.forget();
   if (impacts_ != nullptr) impacts_->forget();
   interface_energy_ = {};
   if (joint_filter_ != nullptr) joint_filter_->give(now_.filter);

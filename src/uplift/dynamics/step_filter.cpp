@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "uplift/dynamics/step_level.h"
+#include "uplift/dynamics/step.h"
 #include "uplift/math/small.h"
 
 // The filters of the scheme of filtered energy decay (docs/theory, section 3): d <- a d + (1 - a) (increment of the step) for displacement,
@@ -10,7 +10,7 @@ namespace uplift {
 /// Takes over what a stage before remembers, or starts from nothing.
 void Stepper::begin_filters() {
   FilterMemory& memory = now_.filter;
-  const Eigen::Index n = bulk_.unknowns, rows = b_.rows();
+  const Eigen::Index n = stage_.bulk.unknowns, rows = stage_.b.rows();
   const double a = options_.scheme.pole, b = options_.scheme.gain;
   filter_loss_ = 0.5 * b * (1 + a), filter_store_ = b / (2 * (1 - a));
   if (!(memory.step > 0) || memory.displacement.size() != n || memory.opening.size() != rows) {
@@ -27,7 +27,7 @@ void Stepper::begin_filters() {
   filtered_stiff_.setZero(n);
   filtered_momentum_.setZero(n);
   products(memory.displacement, memory.velocity, filtered_stiff_, filtered_momentum_);
-  if (bulk_.geometric != nullptr) filtered_stiff_ -= *bulk_.geometric * memory.displacement;
+  if (stage_.bulk.geometric != nullptr) filtered_stiff_ -= *stage_.bulk.geometric * memory.displacement;
 }
 
 /// Filtered increments belong to a step: in a shorter one they count less, in a longer one they start from what there is. What they store
@@ -46,12 +46,12 @@ void Stepper::shorten_filters(double step) {
 /// Moves the filters over the step that was just solved and books what they store and dissipate: with d before the step,
 ///     dissipation b (1 + a)/2 (|du - d_u|^2_K + |dv - d_v|^2_M),      storage b/(2 (1 - a)) (|d_u|^2_K + |d_v|^2_M)
 /// The geometric stiffness is not filtered.
-void Stepper::advance_filters(const Level& level) {
-  const Eigen::Index n = bulk_.unknowns;
+void Stepper::advance_filters(const StepSize& size) {
+  const Eigen::Index n = stage_.bulk.unknowns;
   const double a = options_.scheme.pole, keep = 1 - a;
   const Vector* stiff_before = &stiff_now_;
-  if (bulk_.geometric != nullptr) {
-    work_ = stiff_now_ + *bulk_.geometric * increment_;
+  if (stage_.bulk.geometric != nullptr) {
+    work_ = stiff_now_ + *stage_.bulk.geometric * increment_;
     stiff_before = &work_;
   }
   const double *du = increment_.data(), *v0 = now_.velocity.data(), *v1 = next_.velocity.data();
@@ -74,9 +74,9 @@ void Stepper::advance_filters(const Level& level) {
   });
   energies_.algorithmic += filter_loss_ * lost;
   energies_.filter = filter_store_ * stored;
-  next_.filter.step = level.step;
+  next_.filter.step = size.step;
   if (joint_filter_ == nullptr) return;
-  joint_filter_->end(*last_, *solution_, now_, next_, level.solver->filter());
+  joint_filter_->end(*last_, *solution_, now_, next_, size.solver->filter());
   energies_.algorithmic += joint_filter_->dissipated();
   energies_.filter += joint_filter_->storage();
 }

@@ -227,7 +227,7 @@ void Runner::begin_scales(const Stepper& stepper, const Bulk& bulk) {
 
 bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   const LinearCounts counts = run_.linear;
-  Stepper stepper(model_, bulk, b_, gap_, *laws_, *plan_.method, *plan_.impact, *plan_.solver, step_options(stage), run_.linear);
+  Stepper stepper({model_, bulk, b_, gap_}, {*laws_, *plan_.method}, *plan_.impact, *plan_.solver, step_options(stage), run_.linear);
   start(stage, counts, stepper);
   seen_ = &stepper.state();
   run_.result.step_means = run_.result.step_means || stepper.averages_acceleration();

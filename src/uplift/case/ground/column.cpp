@@ -121,7 +121,7 @@ void FreeField::march(const std::vector<Stage>& stages) {
     options.scheme = stage.scheme;
     options.step = stage.step;
     options.path_average = stage.scheme.filtered();
-    Stepper stepper(model, bulk, b, gap, laws, method, impact, *solver_, options, counts);
+    Stepper stepper({model, bulk, b, gap}, {laws, method}, impact, *solver_, options, counts);
     if (ledger) ledger->acceleration = before->scheme == stage.scheme;
     stepper.start(std::move(state), ledger ? &*ledger : nullptr);
     keep(model, stepper.state());
