@@ -45,7 +45,7 @@ void measure(double size, Setup kind) {
   state.displacement = state.velocity = state.acceleration = Vector::Zero(model.free());
   state.opening = state.force = state.mean_force = Vector::Zero(b.rows());
   state.history.setZero(behaviours.history);
-  const StaticOutcome rest = solve_statics(model, bulk, b, gap, behaviours, *method, *solver, {.steps = 1}, state, counts);
+  const StaticOutcome rest = solve_statics({model, bulk, b, gap}, {behaviours, *method}, *solver, {.steps = 1}, state, counts);
   if (!rest.converged) {
     fmt::print("{}\n", rest.why);
     return;

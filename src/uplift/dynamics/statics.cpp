@@ -41,17 +41,17 @@ std::string diagnose(const InterfaceProblem& problem, const ContactMethod& metho
 /// One static stage.
 class LoadSteps {
  public:
-  LoadSteps(const Model& model, const Bulk& bulk, const Sparse& b, const Vector& gap, const Behaviours& behaviours,
-            const ContactMethod& method, const LinearSolver& solver, const StaticOptions& options, State& state, LinearCounts& counts);
+  LoadSteps(const StageModel& stage, const ContactChoice& contact, const LinearSolver& solver, const StaticOptions& options, State& state,
+            LinearCounts& counts);
   StaticOutcome run();
 
  private:
   std::shared_ptr<const BulkFactor> factor(const SymmetricSum& matrix, const BulkFactor* like) const {
     const LinearSolver& solver = of_statics_ != nullptr ? *of_statics_ : solver_;
-    return std::make_shared<const BulkFactor>(matrix, &b_, bulk_.small, solver, model_, counts_, like);
+    return std::make_shared<const BulkFactor>(matrix, &stage_.b, stage_.bulk.small, solver, stage_.model, counts_, like);
   }
   std::unique_ptr<StepSolver> condensed(std::shared_ptr<const BulkFactor> made) const {
-    return std::make_unique<Condensed>(model_, b_, gap_, !motion_.isZero(0), std::move(made), blocks_, method_, counts_);
+    return std::make_unique<Condensed>(stage_.model, stage_.b, gap_, !motion_.isZero(0), std::move(made), blocks_, method_, counts_);
   }
   void assemble();
   OwnedSum softened(const Sparse& d) const;
@@ -68,10 +68,7 @@ class LoadSteps {
   void book(double to);
   void accept(double to);
 
-  const Model& model_;
-  const Bulk& bulk_;
-  const Sparse& b_;
-  const Vector& still_gap_;
+  const StageModel stage_;
   const ContactMethod& method_;
   const LinearSolver& solver_;
   const std::unique_ptr<const LinearSolver> of_statics_;  // null: the same
@@ -99,41 +96,37 @@ class LoadSteps {
   StaticOutcome outcome_;
 };
 
-LoadSteps::LoadSteps(const Model& model, const Bulk& bulk, const Sparse& b, const Vector& gap, const Behaviours& behaviours,
-                     const ContactMethod& method, const LinearSolver& solver, const StaticOptions& options, State& state,
-                     LinearCounts& counts)
-    : model_(model),
-      bulk_(bulk),
-      b_(b),
-      still_gap_(gap),
-      method_(method),
+LoadSteps::LoadSteps(const StageModel& stage, const ContactChoice& contact, const LinearSolver& solver, const StaticOptions& options,
+                     State& state, LinearCounts& counts)
+    : stage_(stage),
+      method_(contact.method),
       solver_(solver),
-      of_statics_(bulk.small ? nullptr : solver_for_statics(solver, rigid_motions(model))),
+      of_statics_(stage.bulk.small ? nullptr : solver_for_statics(solver, rigid_motions(stage.model))),
       options_(options),
       state_(state),
       counts_(counts),
-      yielding_(model),
+      yielding_(stage.model),
       first_factor_(state.load_factor),
-      gap_(gap),
-      motion_(Vector::Zero(gap.size())),
-      blocks_(blocks_of(model, behaviours)) {
-  blocks_.shift = closed_joint(model, solver.matrices_of(model).stiffness, b, behaviours);
+      gap_(stage.gap),
+      motion_(Vector::Zero(stage.gap.size())),
+      blocks_(blocks_of(stage.model, contact.laws)) {
+  blocks_.shift = closed_joint(stage.model, solver.matrices_of(stage.model).stiffness, stage.b, contact.laws);
   assemble();
   if (yielding_.any()) {
     newton_ = std::make_unique<PlasticNewton>(yielding_, SymmetricSum(matrix_).diagonal(), options.plastic);
     plastic_now_ = yielding_.state(state.bulk_history);
   }
-  product_ = reaction_ = increment_ = Vector::Zero(bulk.unknowns);
+  product_ = reaction_ = increment_ = Vector::Zero(stage.bulk.unknowns);
   find_loads();
 }
 
 /// K + B^T D B with the closed joint D.
 void LoadSteps::assemble() {
   solver_.wait_for_room();
-  OwnedSum stiffness = bulk_.upper(1, 0, 0);
+  OwnedSum stiffness = stage_.bulk.upper(1, 0, 0);
   matrix_.here.swap(stiffness.here);
   matrix_.there.swap(stiffness.there);
-  if (b_.rows() > 0) matrix_.here += Sparse(joint_stiffness(b_, blocks_.shift).triangularView<upper_triangle>());
+  if (stage_.b.rows() > 0) matrix_.here += Sparse(joint_stiffness(stage_.b, blocks_.shift).triangularView<upper_triangle>());
 }
 
 /// The same with the tangent of solids that yield.
@@ -144,22 +137,22 @@ OwnedSum LoadSteps::softened(const Sparse& d) const {
 /// Where the matrix or a load step fails: a joint that is no stiffer than the parts that it joins. It is as exact (any stiffness is), but
 /// soft parts on both sides are not lost in its round-off.
 void LoadSteps::soften_joint() {
-  blocks_.shift = blocks_.shift.cwiseMin(stiffness_of_parts(model_, bulk_.stiffness_matrix, b_));
+  blocks_.shift = blocks_.shift.cwiseMin(stiffness_of_parts(stage_.model, stage_.bulk.stiffness_matrix, stage_.b));
   assemble();
 }
 
 void LoadSteps::find_loads() {
-  bulk_.stiffness.multiply(state_.displacement, product_);
+  stage_.bulk.stiffness.multiply(state_.displacement, product_);
   first_load_ = product_;
   if (yielding_.any()) first_load_ += plastic_now_.force;
-  if (b_.rows() > 0) first_load_ += b_.transpose() * state_.force;
-  dead_load_ = Vector::Zero(bulk_.unknowns);
-  for (const TimeLoad& time_load : model_.time_loads)
+  if (stage_.b.rows() > 0) first_load_ += stage_.b.transpose() * state_.force;
+  dead_load_ = Vector::Zero(stage_.bulk.unknowns);
+  for (const TimeLoad& time_load : stage_.model.time_loads)
     if (time_load.is_static()) dead_load_ += time_load.factor(state_.time) * time_load.shape;
   if (options_.second_order != nullptr)
     for (const TimeLoad& time_load : *options_.second_order) dead_load_ += time_load.factor(state_.time) * time_load.shape;
   change_ = dead_load_ - first_load_;
-  model_.add_prescribed_opening(state_.time, motion_);
+  stage_.model.add_prescribed_opening(state_.time, motion_);
 }
 
 /// Why this is no equilibrium; empty when it is one. A structure that nothing holds has none, but the balance of an interface problem is
@@ -171,18 +164,18 @@ std::string LoadSteps::imbalance(const Vector& unbalanced, const Vector& moved) 
   if (unbalanced.size() == 0) return {};
   if (!unbalanced.allFinite()) return "the forces are not finite";
   double size = std::max({size_of(load_), size_of(reaction_), size_of(first_load_)});
-  if (b_.rows() > 0) size = std::max(size, size_of(b_.cwiseAbs().transpose() * force_.cwiseAbs()));
+  if (stage_.b.rows() > 0) size = std::max(size, size_of(stage_.b.cwiseAbs().transpose() * force_.cwiseAbs()));
   Index stiffest = 0, worst = 0;
-  const double round_off = bulk_.stiffness_matrix.diagonal().cwiseProduct(moved).cwiseAbs().maxCoeff(&stiffest);
+  const double round_off = stage_.bulk.stiffness_matrix.diagonal().cwiseProduct(moved).cwiseAbs().maxCoeff(&stiffest);
   const double lost = 64 * std::numeric_limits<double>::epsilon() * round_off;
   if (lost > 1e-3 * size)
     return fmt::format(
         "the balance of the structure is lost in round-off: at {} stiffness times displacement is {:.1e} times the largest "
         "force; {}",
-        model_.unknown_name(stiffest), round_off / std::max(size, 1e-300), too_much_contrast);
+        stage_.model.unknown_name(stiffest), round_off / std::max(size, 1e-300), too_much_contrast);
   if (const double rest = unbalanced.cwiseAbs().maxCoeff(&worst); rest > 1e-6 * size + lost)
-    return fmt::format("the balance of the structure is not met at {}: {:.1e} of the largest force is left", model_.unknown_name(worst),
-                       rest / std::max(size, 1e-300));
+    return fmt::format("the balance of the structure is not met at {}: {:.1e} of the largest force is left",
+                       stage_.model.unknown_name(worst), rest / std::max(size, 1e-300));
   return {};
 }
 
@@ -205,13 +198,13 @@ bool LoadSteps::nothing_acts() {
 
 /// Solves for a share of the stage; why there is no equilibrium, or empty.
 std::string LoadSteps::solve(double to, int depth) {
-  gap_ = still_gap_ + load_factor(to) * motion_;
+  gap_ = stage_.gap + load_factor(to) * motion_;
   load_ = first_load_ + to * change_;
-  bulk_.stiffness.multiply(state_.displacement, product_);
+  stage_.bulk.stiffness.multiply(state_.displacement, product_);
   Vector right = to * change_ + (first_load_ - product_);
-  if (b_.rows() > 0) {  // what the closed joint bears without any increment
+  if (stage_.b.rows() > 0) {  // what the closed joint bears without any increment
     const Vector opening = state_.opening + (load_factor(to) - state_.load_factor) * motion_;
-    right -= b_.transpose() * blocks_.shift.cwiseProduct(opening).eval();
+    right -= stage_.b.transpose() * blocks_.shift.cwiseProduct(opening).eval();
   }
   const StepStart start{state_.displacement, state_.opening, state_.history};
   Outcome step;
@@ -235,19 +228,19 @@ std::string LoadSteps::solve(double to, int depth) {
   }
   outcome_.iterations += step.iterations;
   if (!step.converged) {
-    if (b_.rows() == 0 || depth < options_.halvings) return step.why;
+    if (stage_.b.rows() == 0 || depth < options_.halvings) return step.why;
     std::string found = diagnose(last_->problem(), method_);
     if (found.empty()) found = softening_joint(last_->problem(), last_->solution()), softens_ = !found.empty();
     return found.empty() ? step.why : found + "; " + step.why;
   }
   take_solution();
-  bulk_.stiffness.multiply(moved_, product_);
+  stage_.bulk.stiffness.multiply(moved_, product_);
   Vector unbalanced = load_ - product_;
   if (yielding_.any()) unbalanced -= plastic_next_.force;
-  if (b_.rows() > 0) reaction_.noalias() = b_.transpose() * force_;
+  if (stage_.b.rows() > 0) reaction_.noalias() = stage_.b.transpose() * force_;
   unbalanced -= reaction_;
   std::string trouble = imbalance(unbalanced, moved_);
-  if (trouble.empty() || b_.rows() == 0) return trouble;
+  if (trouble.empty() || stage_.b.rows() == 0) return trouble;
   const std::string unheld = unheld_motion(last_->problem(), last_->solution(), runaway_ratio);
   return unheld.empty() ? trouble : unheld;
 }
@@ -256,11 +249,11 @@ std::string LoadSteps::solve(double to, int depth) {
 void LoadSteps::take_solution() {
   moved_ = state_.displacement + increment_;
   not_unique_.clear();
-  if (b_.rows() == 0) return;
+  if (stage_.b.rows() == 0) return;
   const InterfaceSolution& solution = last_->solution();
   opening_ = solution.opening, force_ = solution.force, history_ = solution.now;
   if (yielding_.any()) return;
-  Lifted lifted = keep_undetermined(model_, b_, last_->problem(), solution, increment_, loose_);
+  Lifted lifted = keep_undetermined(stage_.model, stage_.b, last_->problem(), solution, increment_, loose_);
   if (lifted.notice.empty()) return;
   moved_ = state_.displacement + lifted.increment;
   opening_.swap(lifted.opening), force_.swap(lifted.force), history_.swap(lifted.history);
@@ -276,7 +269,7 @@ void LoadSteps::book(double to) {
     progress_.work += yielding_.support_work(from, plastic_now_, now, plastic_next_);
     progress_.dissipated += yielding_.dissipated(state_.displacement, from, plastic_now_, moved_, now, plastic_next_);
   }
-  if (b_.rows() == 0) return;
+  if (stage_.b.rows() == 0) return;
   progress_.work += 0.5 * (after - before) * motion_.dot(state_.force + force_);
   State next;
   next.opening = opening_, next.force = force_;
@@ -287,7 +280,7 @@ void LoadSteps::accept(double to) {
   book(to);
   state_.displacement = moved_;
   state_.load_factor = load_factor(to);
-  if (b_.rows() > 0) {
+  if (stage_.b.rows() > 0) {
     state_.opening = opening_;
     state_.force = state_.mean_force = force_;
     state_.history = history_;
@@ -348,7 +341,7 @@ bool LoadSteps::retry_with_softer_joint() {
 
 StaticOutcome LoadSteps::run() {
   std::shared_ptr<const BulkFactor> made = factor(matrix_, nullptr);
-  if (!made->ok() && !made->too_large() && b_.rows() > 0) {
+  if (!made->ok() && !made->too_large() && stage_.b.rows() > 0) {
     soften_joint();
     made = factor(matrix_, nullptr);
   }
@@ -359,7 +352,7 @@ StaticOutcome LoadSteps::run() {
   linear_ = condensed(std::move(made));
   if (!yielding_.any()) Sparse().swap(matrix_.here);  // tangents alone are made of it
   bool all = go_on();
-  if (!all && outcome_.failed && b_.rows() > 0 && !softens_ && !yielding_.any()) all = retry_with_softer_joint();
+  if (!all && outcome_.failed && stage_.b.rows() > 0 && !softens_ && !yielding_.any()) all = retry_with_softer_joint();
   state_.velocity.setZero();
   state_.acceleration.setZero(state_.velocity.size());  // the path average has left none
   state_.filter = {};
@@ -370,10 +363,9 @@ StaticOutcome LoadSteps::run() {
 
 }  // namespace
 
-StaticOutcome solve_statics(const Model& model, const Bulk& bulk, const Sparse& b, const Vector& gap, const Behaviours& behaviours,
-                            const ContactMethod& method, const LinearSolver& solver, const StaticOptions& options, State& state,
-                            LinearCounts& counts) {
-  return LoadSteps(model, bulk, b, gap, behaviours, method, solver, options, state, counts).run();
+StaticOutcome solve_statics(const StageModel& stage, const ContactChoice& contact, const LinearSolver& solver, const StaticOptions& options,
+                            State& state, LinearCounts& counts) {
+  return LoadSteps(stage, contact, solver, options, state, counts).run();
 }
 
 }  // namespace uplift

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "uplift/dynamics/condensed.h"
 #include "uplift/dynamics/plastic_newton.h"
+#include "uplift/dynamics/stage_model.h"
 
 namespace uplift {
 
@@ -46,9 +46,8 @@ struct StaticOutcome {
 /// K alone is singular for a structure that rests on contact: the factored matrix is K + B^T D B with the closed joint's stiffness D, taken
 /// back in the interface problem (docs/theory, section 4). Solids that can yield are iterated on around that (dynamics/plastic_newton.h). A
 /// load step that fails is halved; when the smallest one fails too, `state` is the last equilibrium. Velocity and acceleration of the state
-/// become zero. `gap`: initial gaps, without those of the motions.
-StaticOutcome solve_statics(const Model& model, const Bulk& bulk, const Sparse& b, const Vector& gap, const Behaviours& behaviours,
-                            const ContactMethod& method, const LinearSolver& solver, const StaticOptions& options, State& state,
-                            LinearCounts& counts);
+/// become zero.
+StaticOutcome solve_statics(const StageModel& stage, const ContactChoice& contact, const LinearSolver& solver, const StaticOptions& options,
+                            State& state, LinearCounts& counts);
 
 }  // namespace uplift

@@ -66,7 +66,7 @@ bool Runner::solve(const Stage& stage, const Sparse* geometric, const std::vecto
   const Bulk bulk(plan_.solver->matrices_of(resting), geometric);
   const StaticOptions options{stage.steps, stage.halvings, second_order, {}, after_step};
   const StaticOutcome outcome =
-      solve_statics(resting, bulk, b, gap_, *laws_, *plan_.method, *plan_.solver, options, run_.state, run_.linear);
+      solve_statics({resting, bulk, b, gap_}, {*laws_, *plan_.method}, *plan_.solver, options, run_.state, run_.linear);
   run_.result.counts.load_steps += outcome.steps;
   run_.result.counts.retries += outcome.retries;
   run_.result.counts.iterations += outcome.iterations;

@@ -65,7 +65,7 @@ Vector rest_of(const BuiltCase& built) {
   state.history.setZero(behaviours.history);
   const Vector gap = Vector::Zero(b.rows());
   const StaticOutcome rest =
-      solve_statics(built.model, bulk, b, gap, behaviours, *built.plan.method, *built.plan.solver, {.steps = 5}, state, counts);
+      solve_statics({built.model, bulk, b, gap}, {behaviours, *built.plan.method}, *built.plan.solver, {.steps = 5}, state, counts);
   EXPECT_TRUE(rest.converged) << rest.why;
   return built.model.full(state.displacement, 0, 0);
 }

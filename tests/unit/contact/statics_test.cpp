@@ -57,7 +57,7 @@ Rest rest(const std::string& name, bool rubs, double push, double height) {
   state.displacement = state.velocity = state.acceleration = Vector::Zero(whole.model.free());
   state.opening = state.force = state.mean_force = gap;
   state.history.setZero(behaviours.history);
-  result.outcome = solve_statics(whole.model, bulk, b, gap, behaviours, *chosen, *solver, {.steps = 4}, state, counts);
+  result.outcome = solve_statics({whole.model, bulk, b, gap}, {behaviours, *chosen}, *solver, {.steps = 4}, state, counts);
   const int normal = rubs ? points : 0;
   for (int i = 0; i < points; ++i) {
     result.pressure -= state.force[normal + i];

@@ -40,7 +40,7 @@ Rest rest_of(const BuiltCase& built, int steps, const PlasticOptions& options) {
   state.displacement = state.velocity = state.acceleration = Vector::Zero(built.model.free());
   state.opening = state.force = state.mean_force = gap;
   state.history.setZero(behaviours.history);
-  rest.outcome = solve_statics(built.model, bulk, b, gap, behaviours, *built.plan.method, *built.plan.solver,
+  rest.outcome = solve_statics({built.model, bulk, b, gap}, {behaviours, *built.plan.method}, *built.plan.solver,
                                {.steps = steps, .plastic = options}, state, rest.counts);
   return rest;
 }
