@@ -16,7 +16,7 @@ struct StepCounts {
 };
 
 /// What a stage hands on to the next one beside its state.
-struct Ledger {
+struct StageHandover {
   Energies energies;
   double initial_energy = 0, largest_external = 0;  // J
   bool acceleration = false;                        // the state's acceleration is that of the scheme and goes on
@@ -26,7 +26,7 @@ struct Ledger {
 /// Where the march through a stage stands between two steps: a value, from which another Stepper of the same stage goes on.
 struct MarchState {
   State state;
-  Ledger ledger;
+  StageHandover handover;
   StepCounts counts;
   double start_time = 0;   // s: of the stage
   double origin = 0;       // J: what the balance is measured from
@@ -39,10 +39,12 @@ class Stepper {
   Stepper(const StageModel& stage, const ContactChoice& contact, const ImpactRule& impact, const LinearSolver& solver,
           const StepOptions& options, LinearCounts& counts);
   /// Takes over displacement, velocity, opening and history; the initial acceleration follows from the balance (the path average
-  /// needs none: that of its state is empty). With the ledger of a stage before, energies go on counting, and so does its acceleration when
-  /// it is the same scheme's.
-  void start(State state, const Ledger* before = nullptr);
-  Ledger ledger() const { return {energies_, initial_energy_, largest_external_, !path_, impacts_ != nullptr ? impacts_->kick() : Kick()}; }
+  /// needs none: that of its state is empty). With the handover of a stage before, energies go on counting, and so does its acceleration
+  /// when it is the same scheme's.
+  void start(State state, const StageHandover* before = nullptr);
+  StageHandover handover() const {
+    return {energies_, initial_energy_, largest_external_, !path_, impacts_ != nullptr ? impacts_->kick() : Kick()};
+  }
   /// Goes on where another Stepper of the same stage has been: takes the place of `start`. After `reenter` of that one both take the same
   /// steps to the last bit.
   void resume(MarchState from);

@@ -33,7 +33,7 @@ void Stepper::begin_acceleration() {
   if (impact_ == nullptr) accelerator_.reset();  // the factor is large, and the scheme carries accelerations on
 }
 
-void Stepper::start(State state, const Ledger* before) {
+void Stepper::start(State state, const StageHandover* before) {
   now_ = std::move(state);
   start_time_ = now_.time;
   if (newton_ != nullptr) {
@@ -85,7 +85,7 @@ State Stepper::whole_state() const {
 }
 
 MarchState Stepper::march_state() const {
-  return {whole_state(), ledger(), counts_, start_time_, origin_, sizes_.made()};
+  return {whole_state(), handover(), counts_, start_time_, origin_, sizes_.made()};
 }
 
 void Stepper::resume(MarchState from) {
@@ -96,10 +96,10 @@ void Stepper::resume(MarchState from) {
     give_back_free_memory();
     pair_ = solver_.pair(stage_.bulk.stiffness_matrix, stage_.bulk.mass_matrix);
   }
-  energies_ = from.ledger.energies;
-  initial_energy_ = from.ledger.initial_energy;
-  largest_external_ = from.ledger.largest_external;
-  if (impacts_ != nullptr) impacts_->set_kick(from.ledger.kick);
+  energies_ = from.handover.energies;
+  initial_energy_ = from.handover.initial_energy;
+  largest_external_ = from.handover.largest_external;
+  if (impacts_ != nullptr) impacts_->set_kick(from.handover.kick);
   counts_ = from.counts;
   start_time_ = from.start_time;
   origin_ = from.origin;

@@ -6,7 +6,7 @@
 
 namespace uplift {
 
-/// Adds the step that was just solved to the ledger.
+/// Adds the step that was just solved to the energies.
 void Stepper::book_energies(const StepSize& size) {
   const Eigen::Index n = stage_.bulk.unknowns;
   const double *du = increment_.data(), *f0 = force_now_.data(), *f1 = force_next_.data();

@@ -302,7 +302,7 @@ bool Runner::dynamics(const Stage& stage, const Bulk& bulk) {
   sum_up(stage.step);
   run_.state = stepper.whole_state();
   seen_ = &run_.state;
-  run_.ledger = stepper.ledger();
+  run_.ledger = stepper.handover();
   run_.marched = run_.stage;
   run_.result.counts.steps += stepper.counts().steps;
   run_.result.counts.retries += stepper.counts().retries;

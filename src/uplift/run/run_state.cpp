@@ -74,9 +74,9 @@ void list_parts(Archive& archive, T& kick) {
   archive(kick.step, kick.acceleration, kick.force);
 }
 
-template <class Archive, SameAs<Ledger> T>
-void list_parts(Archive& archive, T& ledger) {
-  archive(ledger.energies, ledger.initial_energy, ledger.largest_external, ledger.acceleration, ledger.kick);
+template <class Archive, SameAs<StageHandover> T>
+void list_parts(Archive& archive, T& handover) {
+  archive(handover.energies, handover.initial_energy, handover.largest_external, handover.acceleration, handover.kick);
 }
 
 template <class Archive, SameAs<FilterMemory> T>
@@ -97,7 +97,7 @@ void list_parts(Archive& archive, T& counts) {
 
 template <class Archive, SameAs<MarchState> T>
 void list_parts(Archive& archive, T& march) {
-  archive(march.state, march.ledger, march.counts, march.start_time, march.origin, march.sizes);
+  archive(march.state, march.handover, march.counts, march.start_time, march.origin, march.sizes);
 }
 
 template <class Archive, SameAs<SecondOrder> T>

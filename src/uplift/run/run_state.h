@@ -20,7 +20,7 @@ struct RunState {
 
   // what a stage hands on to the next one
   State state;
-  std::optional<Ledger> ledger;             // of the dynamic stages; empty before the first one
+  std::optional<StageHandover> ledger;      // of the dynamic stages; empty before the first one
   std::optional<std::size_t> marched;       // the dynamic stage before, as long as nothing came in between
   Vector held;                              // what they have borne, on the free unknowns [N, N m]
   std::optional<SecondOrder> second_order;  // of P-delta, before elimination

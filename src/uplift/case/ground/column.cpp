@@ -113,7 +113,7 @@ void FreeField::march(const std::vector<Stage>& stages) {
   LinearCounts counts;
   State state;
   state.displacement = state.velocity = state.acceleration = Vector::Zero(model.free());
-  std::optional<Ledger> ledger;
+  std::optional<StageHandover> handover;
   const Stage* before = nullptr;
   for (const Stage& stage : stages) {
     if (stage.type == Stage::Type::statics || !why_.empty()) continue;
@@ -122,8 +122,8 @@ void FreeField::march(const std::vector<Stage>& stages) {
     options.step = stage.step;
     options.path_average = stage.scheme.filtered();
     Stepper stepper({model, bulk, b, gap}, {laws, method}, impact, *solver_, options, counts);
-    if (ledger) ledger->acceleration = before->scheme == stage.scheme;
-    stepper.start(std::move(state), ledger ? &*ledger : nullptr);
+    if (handover) handover->acceleration = before->scheme == stage.scheme;
+    stepper.start(std::move(state), handover ? &*handover : nullptr);
     keep(model, stepper.state());
     const long steps = std::max(1L, std::lround(stage.duration / stage.step));
     for (long step = 0; step < steps && why_.empty(); ++step) {
@@ -131,7 +131,7 @@ void FreeField::march(const std::vector<Stage>& stages) {
       keep(model, stepper.state());
     }
     state = stepper.whole_state();
-    ledger = stepper.ledger();
+    handover = stepper.handover();
     before = &stage;
   }
 }
