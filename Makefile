@@ -59,10 +59,10 @@ web:               ## rebuild the report page (developers of the page only)
 	cd web && npm ci && npm run check && npm run build
 
 format:            ## clang-format all sources
-	git ls-files 'src/*.h' 'src/*.cpp' 'tests/*.cpp' 'tests/*.h' 'bench/*.cpp' 'samples/*.h' 'fuzz/*.cpp' 'fuzz/*.h' | tr '\n' '\0' | xargs -0 clang-format-14 -i
+	git ls-files 'src/*.h' 'src/*.cpp' 'tests/*.cpp' 'tests/*.h' 'bench/*.cpp' 'fuzz/*.cpp' 'fuzz/*.h' | tr '\n' '\0' | xargs -0 clang-format-14 -i
 
 check-format:
-	git ls-files 'src/*.h' 'src/*.cpp' 'tests/*.cpp' 'tests/*.h' 'bench/*.cpp' 'samples/*.h' 'fuzz/*.cpp' 'fuzz/*.h' | tr '\n' '\0' | xargs -0 clang-format-14 --dry-run --Werror
+	git ls-files 'src/*.h' 'src/*.cpp' 'tests/*.cpp' 'tests/*.h' 'bench/*.cpp' 'fuzz/*.cpp' 'fuzz/*.h' | tr '\n' '\0' | xargs -0 clang-format-14 --dry-run --Werror
 
 layers:            ## the order of the layers
 	python3 scripts/check_layers.py

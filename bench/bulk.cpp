@@ -10,7 +10,7 @@
 #include <ctime>
 #include <fstream>
 
-#include "samples/two_boxes.h"
+#include "tests/two_boxes.h"
 #include "uplift/base/declare.h"
 #include "uplift/dynamics/cost.h"
 #include "uplift/dynamics/split_response.h"

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "uplift/mesh/box.h"
+#include "tests/simple_meshes.h"
 
 // A plane through a million cells: where few of them are cut, as under a raft, and where all are, also where it divides all of them into
 // simplices, or their faces are warped.

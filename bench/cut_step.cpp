@@ -15,10 +15,10 @@
 #include <string>
 #include <vector>
 
+#include "tests/simple_meshes.h"
 #include "uplift/case/case.h"
 #include "uplift/io/text/toml.h"
 #include "uplift/linear/memory.h"
-#include "uplift/mesh/box.h"
 
 namespace uplift {
 namespace {

@@ -7,13 +7,13 @@
 #include "data_support.h"
 #include "property/oracle_models.h"
 #include "ran_support.h"
+#include "simple_meshes.h"
 #include "text_support.h"
 #include "unit/elements/solid_support.h"
 #include "uplift/base/file.h"
 #include "uplift/dynamics/bulk.h"
 #include "uplift/elements/bulk_laws/drucker_prager.h"
 #include "uplift/elements/solid_nonlinear.h"
-#include "uplift/mesh/box.h"
 #include "uplift/mesh/cut.h"
 
 // What a run costs in operations that can be counted: factorisations, back-solves, allocations.

@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
+#include "simple_meshes.h"
 #include "unit/case/cut_support.h"
-#include "uplift/mesh/box.h"
 
 // A thousand planes through a body in tension: anywhere, through nodes, along edges and diagonals, beside nodes by parts of a cell down to
 // 1e-10, and beyond the body. Bonded again it moves as the whole body does; else the plane is refused in words.

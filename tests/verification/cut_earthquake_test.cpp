@@ -10,8 +10,8 @@
 
 #include "data_support.h"
 #include "manual.h"
+#include "simple_meshes.h"
 #include "unit/case/cut_support.h"
-#include "uplift/mesh/box.h"
 #include "uplift/motion/spectrum.h"
 
 namespace uplift::verification::cut_earthquake_test {

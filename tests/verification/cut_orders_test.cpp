@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "manual.h"
+#include "simple_meshes.h"
 #include "support.h"
 #include "unit/case/cut_support.h"
-#include "uplift/mesh/box.h"
 
 namespace uplift::verification::cut_orders_test {
 namespace {

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "simple_meshes.h"
 #include "support.h"
 #include "uplift/case/case.h"
 #include "uplift/io/text/toml.h"
-#include "uplift/mesh/box.h"
 #include "uplift/mesh/mesh.h"
 
 // What the verification cases with meshes share: a case as text with a mesh made here, run as a user would run it.

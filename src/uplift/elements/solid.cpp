@@ -64,13 +64,6 @@ double Solid::volume() const {
   return sum;
 }
 
-std::vector<Vec3> Solid::point_positions() const {
-  std::vector<Vec3> corners, positions;
-  for (const int node : nodes()) corners.push_back((*coordinates_)[static_cast<std::size_t>(node)]);
-  for (const Vec3& local : tables()->stiffness.local) positions.push_back(cell_position(cell_shape(cell_, local), corners));
-  return positions;
-}
-
 Stress Solid::elastic_stress(const Strain& strain) const {
   const bool flat = dimension_ == 2 && section_->plane == PlaneState::stress;
   const double mu = section_->material.shear(),

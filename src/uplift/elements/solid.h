@@ -61,9 +61,8 @@ class Solid : public Element {
   bool is_whole() const { return part_ == nullptr; }  // not filled in part
   double volume() const;                              // m3; area times thickness for surface cells
 
-  /// Integration points of the stiffness: their number, and where they are [m].
+  /// Number of the integration points of the stiffness.
   int num_points() const;
-  std::vector<Vec3> point_positions() const;
   /// Stress at the integration points, of the element's nodal displacements [m] (size unknowns()); the incompatible modes are included. In
   /// plane strain zz is the stress that keeps the thickness, in plane stress it is zero.
   std::vector<Stress> point_stress(const Vector& displacement) const;

@@ -120,10 +120,6 @@ void add_transposed(std::ptrdiff_t n, std::ptrdiff_t m, const double* a, std::pt
   }
 }
 
-/// In-place Cholesky factor (lower, column-major) of a small symmetric matrix; false when it is not positive definite.
-bool cholesky(std::ptrdiff_t n, double* a);
-/// Solves L L^T x = b in place.
-void cholesky_solve(std::ptrdiff_t n, const double* l, double* b);
 /// Solves A x = b in place by Gauss elimination without exchanges of rows, with everything where the compiler knows it; false, with nothing
 /// changed, where a pivot is less than a tenth of the largest number below it.
 template <int N>

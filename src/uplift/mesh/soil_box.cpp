@@ -7,7 +7,7 @@
 #include <string>
 
 #include "uplift/base/text.h"
-#include "uplift/mesh/box.h"
+#include "uplift/mesh/grid.h"
 #include "uplift/mesh/index.h"
 
 namespace uplift {

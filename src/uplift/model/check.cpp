@@ -150,11 +150,6 @@ std::vector<int> blocks(const Sparse& a) {
 
 }  // namespace
 
-std::string loose_part(const Model& model, Resistance resistance) {
-  const Vector motion = unresisted_motion(model, resistance);
-  return motion.size() == 0 ? std::string() : describe_motion(model, motion);
-}
-
 void check_static(const Model& model, const std::function<Where(const std::string& node)>& place_of) {
   const Vector motion = unresisted_motion(model, Resistance::stiffness);
   if (motion.size() == 0) return;

@@ -21,10 +21,7 @@ void check_impulses(const Model& model);
 /// Names the loose nodes and how they can move. `place_of`: of a node by its name, for a model without interfaces.
 void check_static(const Model& model, const std::function<Where(const std::string& node)>& place_of = {});
 
-/// How the model can move without resistance with its interfaces closed, in words ("\"top\", \"base\" can move along (1, 0)"); empty when
-/// it cannot.
-std::string loose_part(const Model& model, Resistance resistance = Resistance::stiffness);
-/// A motion of the free unknowns in the same words.
+/// A motion of the free unknowns in words ("\"top\", \"base\" can move along (1, 0)").
 std::string describe_motion(const Model& model, const Vector& motion);
 
 }  // namespace uplift

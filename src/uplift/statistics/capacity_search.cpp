@@ -127,11 +127,4 @@ std::vector<double> CapacitySearch::resurrections() const {
   return found;
 }
 
-double suggested_start(const SearchPlan& plan, std::span<const RecordCapacity> before) {
-  if (before.empty()) return plan.start;
-  double sum = 0;
-  for (const RecordCapacity& c : before) sum += std::log(c.im);
-  return std::clamp(std::exp(sum / static_cast<double>(before.size())), plan.smallest, plan.largest);
-}
-
 }  // namespace uplift

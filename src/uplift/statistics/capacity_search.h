@@ -54,8 +54,4 @@ class CapacitySearch {
   std::map<double, RunOutcome> results_;
 };
 
-/// A start from capacities of records before: their geometric mean within the range of the plan; the plan's own start without any.
-/// The start belongs to the plan of a record once it is chosen: keep it with the results.
-double suggested_start(const SearchPlan&, std::span<const RecordCapacity>);
-
 }  // namespace uplift

@@ -113,13 +113,6 @@ double student_two_sided(double level, double freedom) {
   return std::sqrt(freedom * (1 - x) / x);
 }
 
-ConfidenceInterval clopper_pearson(long k, long n, double level) {
-  assert(n >= 1 && k >= 0 && k <= n && level > 0 && level < 1);
-  const double each = (1 - level) / 2, hits = static_cast<double>(k), misses = static_cast<double>(n - k);
-  return {k == 0 ? 0.0 : incomplete_beta_inverse(hits, misses + 1, each),
-          k == n ? 1.0 : 1 - incomplete_beta_inverse(misses, hits + 1, each)};
-}
-
 long binomial_quantile(long n, double p, double u) {
   if (p <= 0 || p >= 1) return p <= 0 ? 0 : n;
   long below = -1, k = n;  // P(K <= below) < u <= P(K <= k)

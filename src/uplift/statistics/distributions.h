@@ -32,10 +32,6 @@ double incomplete_beta_inverse(double a, double b, double p);
 /// The t >= 0 with P(|T| <= t) = level for Student's distribution with `freedom` > 0 degrees of freedom; 0 < level < 1.
 double student_two_sided(double level, double freedom);
 
-/// Clopper & Pearson's interval of a probability from k of n trials, 0 <= k <= n, n >= 1: each end has the error probability
-/// (1 - level)/2 at most. Both ends are always given.
-ConfidenceInterval clopper_pearson(long k, long n, double level);
-
 /// The smallest k with P(K <= k) >= u for K binomial of n trials with probability p; 0 <= p <= 1, 0 < u < 1.
 long binomial_quantile(long n, double p, double u);
 

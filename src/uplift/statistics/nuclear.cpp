@@ -34,24 +34,13 @@ double SeismicCapacity::beta_c() const {
 double SeismicCapacity::hclpf() const {
   return median * std::exp(-1.65 * (beta_r + beta_u));
 }
-double SeismicCapacity::hclpf_exact() const {
-  return median * std::exp(normal_quantile(0.05) * (beta_r + beta_u));
-}
 double SeismicCapacity::hclpf_composite() const {
   return median * std::exp(-2.326 * beta_c());
-}
-double SeismicCapacity::hclpf_composite_exact() const {
-  return median * std::exp(normal_quantile(0.01) * beta_c());
 }
 double SeismicCapacity::probability(double a, double confidence) const {
   assert(a > 0 && confidence > 0 && confidence < 1);
   return lognormal_cdf(std::log(a / median) + beta_u * normal_quantile(confidence), beta_r);
 }
-double SeismicCapacity::mean_probability(double a) const {
-  assert(a > 0);
-  return lognormal_cdf(std::log(a / median), beta_c());
-}
-
 OrRefused<SeismicCapacity> separation_of_variables(double reference, std::span<const SafetyFactor> factors) {
   if (!(reference > 0 && std::isfinite(reference))) return Refused{fmt::format("the reference {} is not a positive number", reference)};
   double log_median = std::log(reference), of_r = 0, of_u = 0;
@@ -100,10 +89,6 @@ ConfidenceInterval TwoWayLayout::median_interval(double level) const {
   return {median * std::exp(-half), median * std::exp(half)};
 }
 
-double risk_of_power_law(double k0, double k, double theta, double beta) {
-  return std::exp(std::log(k0) - k * std::log(theta) + k * k * beta * beta / 2);
-}
-
 // By parts: the integral of H dP over every segment of H = c a^-k. Its integrand is a normal density in ln a with the mean
 // ln(theta) - k beta^2.
 OrRefused<AnnualRisk> risk_of_curve(std::span<const HazardPoint> hazard, double theta, double beta) {
@@ -142,11 +127,6 @@ OrRefused<AnnualRisk> risk_of_curve(std::span<const HazardPoint> hazard, double 
 PerformancePair performance_pair(double design_im, double theta, double beta) {
   assert(design_im > 0 && theta > 0 && beta >= 0);
   return {lognormal_cdf(std::log(design_im / theta), beta), lognormal_cdf(std::log(1.5 * design_im / theta), beta)};
-}
-
-PerformancePair performance_pair_of(double probability, double beta) {
-  assert(probability > 0 && probability < 1 && beta > 0);
-  return {probability, normal_cdf(normal_quantile(probability) + std::log(1.5) / beta)};
 }
 
 }  // namespace uplift

@@ -20,16 +20,11 @@ struct SeismicCapacity {
   double beta_c() const;
   /// High confidence of a low probability of failure: 95 % confidence of at most 5 %, A_m exp(-1.65 (beta_r + beta_u)).
   double hclpf() const;
-  /// The same with the exact quantile 1.644854 instead of 1.65.
-  double hclpf_exact() const;
-  /// 1 % of the composite curve: A_m exp(-2.326 beta_c), and with the exact quantile.
+  /// 1 % of the composite curve, Phi(ln(a/A_m)/beta_c): A_m exp(-2.326 beta_c).
   double hclpf_composite() const;
-  double hclpf_composite_exact() const;
   /// Probability of failure at the intensity a that is not exceeded with `confidence` in (0, 1):
   /// Phi((ln(a/A_m) + beta_u Phi^-1(confidence))/beta_r).
   double probability(double a, double confidence) const;
-  /// Mean probability of failure at a: Phi(ln(a/A_m)/beta_c).
-  double mean_probability(double a) const;
 };
 
 /// One factor of a separation of variables: a factor of safety with its scatter.
@@ -68,8 +63,6 @@ struct AnnualRisk {
   double share_below = 0, share_above = 0;
   double share_beyond() const { return share_below + share_above; }
 };
-/// Hazard k0 a^-k [1/a]: rate k0 theta^-k exp(k^2 beta^2/2). Cornell (1996).
-double risk_of_power_law(double k0, double k, double theta, double beta);
 /// Integral of P(failure | a) |dH| with the lognormal curve (theta, beta >= 0) and a hazard curve that is linear in ln a, ln H between its
 /// points and goes on with the slopes of its ends. Every segment in closed form. Refused unless there are two points with ascending im > 0
 /// and descending rate > 0.
@@ -82,7 +75,5 @@ struct PerformancePair {
 };
 /// Of the lognormal curve (theta, beta >= 0).
 PerformancePair performance_pair(double design_im, double theta, double beta);
-/// The pair of a curve with exactly `probability` at the design motion.
-PerformancePair performance_pair_of(double probability, double beta);
 
 }  // namespace uplift

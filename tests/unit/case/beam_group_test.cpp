@@ -3,10 +3,10 @@
 
 #include <cmath>
 
+#include "simple_meshes.h"
 #include "text_support.h"
 #include "uplift/case/mesh/beam_cells.h"
 #include "uplift/io/text/toml.h"
-#include "uplift/mesh/box.h"
 #include "uplift/model/hinges.h"
 
 namespace uplift::beam_group_test {

@@ -8,10 +8,10 @@
 #include <random>
 #include <vector>
 
+#include "simple_meshes.h"
 #include "unit/case/cut_support.h"
 #include "uplift/case/mesh/mesh.h"
 #include "uplift/math/dense.h"
-#include "uplift/mesh/box.h"
 
 // Matrices of cut models without a solution: motions of rigid sides, uniform stress across a joint, and the aligned joint of a plane
 // through nodes. Nothing is divided by a stiffness here, so that round-off alone remains.

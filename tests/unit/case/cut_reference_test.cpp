@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "simple_meshes.h"
 #include "unit/case/cut_support.h"
 #include "uplift/math/dense.h"
-#include "uplift/mesh/box.h"
 
 // Cut interfaces against reference values that were computed outside of this program: a bar with a cracking joint (closed form), a rigid
 // block on tensionless springs, a raft on a block of soil, a block that is harder than its soil.

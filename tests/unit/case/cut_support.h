@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "simple_meshes.h"
 #include "uplift/case/case.h"
 #include "uplift/io/text/toml.h"
-#include "uplift/mesh/box.h"
 #include "uplift/mesh/mesh.h"
 
 // Cases on meshes of a test: what the tests of cut interfaces share.

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "simple_meshes.h"
 #include "unit/case/cut_support.h"
-#include "uplift/mesh/box.h"
 
 // A block on soil in one mesh, parted by a plane at an angle to its cells, that rocks and lifts off: mirrored, turned and in other units it
 // does the same. Mesh, plane, gravity and ground motion are turned together.

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "simple_meshes.h"
 #include "text_support.h"
 #include "unit/case/cut_support.h"
 #include "uplift/case/case.h"
 #include "uplift/case/mesh/mesh.h"
-#include "uplift/mesh/box.h"
 
 // Interfaces on planes that the mesh ignores: against closed forms, and against the aligned joint.
 namespace uplift::cut_test {

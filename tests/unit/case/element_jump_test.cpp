@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "simple_meshes.h"
 #include "unit/case/cut_support.h"
 #include "uplift/case/case.h"
-#include "uplift/mesh/box.h"
 
 // Constant and rigid jumps in cut cells: against the element-condensed discontinuity of the literature, written down here from its own
 // equations, and its locking (docs/theory/element_jumps.md).

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "simple_meshes.h"
 #include "text_support.h"
 #include "tower_case.h"
 #include "uplift/case/case.h"
 #include "uplift/contact/method.h"
 #include "uplift/contact/unheld.h"
 #include "uplift/io/text/toml.h"
-#include "uplift/mesh/box.h"
 #include "uplift/model/hinges.h"
 
 namespace uplift::failures_test {

@@ -3,10 +3,10 @@
 
 #include <cmath>
 
+#include "simple_meshes.h"
 #include "text_support.h"
 #include "uplift/case/case.h"
 #include "uplift/io/text/toml.h"
-#include "uplift/mesh/box.h"
 
 // Initial gaps from the geometry and from tables.
 namespace uplift::gap_test {

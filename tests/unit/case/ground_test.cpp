@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "simple_meshes.h"
 #include "text_support.h"
 #include "uplift/io/text/toml.h"
-#include "uplift/mesh/box.h"
 
 // The ground beside the model: supports that hold at rest alone, tied sides, free field. Against closed forms of plane waves and by what
 // must be the same.

@@ -3,10 +3,10 @@
 
 #include <cmath>
 
+#include "simple_meshes.h"
 #include "text_support.h"
 #include "uplift/case/case.h"
 #include "uplift/io/text/toml.h"
-#include "uplift/mesh/box.h"
 
 // Initial velocities and displacements of groups of the mesh.
 namespace uplift::initial_test {

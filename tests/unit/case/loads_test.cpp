@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "simple_meshes.h"
 #include "text_support.h"
 #include "uplift/case/case.h"
 #include "uplift/io/text/toml.h"
-#include "uplift/mesh/box.h"
 
 // Pressures and tractions on surfaces of the mesh against integrals and closed forms.
 namespace uplift::loads_test {

@@ -8,11 +8,11 @@
 #include <numbers>
 #include <set>
 
+#include "simple_meshes.h"
 #include "text_support.h"
 #include "uplift/elements/solid.h"
 #include "uplift/io/text/toml.h"
 #include "uplift/math/sparse_solvers.h"
-#include "uplift/mesh/box.h"
 #include "uplift/model/builder.h"
 
 // Cases with a mesh: against closed forms, and against the same mesh without an interface.

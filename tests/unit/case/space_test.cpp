@@ -4,12 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "simple_meshes.h"
 #include "text_support.h"
 #include "uplift/case/case.h"
 #include "uplift/dynamics/statics.h"
 #include "uplift/dynamics/step.h"
 #include "uplift/io/text/toml.h"
-#include "uplift/mesh/box.h"
 
 namespace uplift::space_test {
 namespace {

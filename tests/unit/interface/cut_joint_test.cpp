@@ -5,8 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "simple_meshes.h"
 #include "uplift/interface/interface.h"
-#include "uplift/mesh/box.h"
 #include "uplift/mesh/cell_quadrature.h"
 #include "uplift/mesh/cell_shapes.h"
 #include "uplift/mesh/placed_cell.h"

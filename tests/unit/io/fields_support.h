@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "simple_meshes.h"
 #include "uplift/io/fields/fields.h"
-#include "uplift/mesh/box.h"
 
 // Meshes and fields to write, and a reader of what was written that has none of the writers' code: a strict parser of plain XML, a decoder
 // of base64.

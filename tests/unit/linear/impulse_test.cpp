@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "samples/two_boxes.h"
+#include "two_boxes.h"
 #include "uplift/base/declare.h"
 #include "uplift/contact/impact/impact.h"
 #include "uplift/dynamics/bulk.h"

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "samples/two_boxes.h"
+#include "two_boxes.h"
 #include "uplift/base/declare.h"
 #include "uplift/dynamics/bulk.h"
 #include "uplift/linear/rates.h"

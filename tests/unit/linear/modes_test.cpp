@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "samples/two_boxes.h"
+#include "two_boxes.h"
 #include "uplift/linear/solver.h"
 #include "uplift/math/vibration.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "samples/two_boxes.h"
+#include "two_boxes.h"
 #include "uplift/dynamics/bulk.h"
 
 namespace uplift::split_columns_test {

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "uplift/mesh/box.h"
+#include "simple_meshes.h"
 #include "uplift/mesh/cut.h"
 #include "uplift/mesh/parts.h"
 #include "uplift/mesh/placed_cell.h"

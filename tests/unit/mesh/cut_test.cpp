@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
+#include "simple_meshes.h"
 #include "unit/mesh/mesh_support.h"
-#include "uplift/mesh/box.h"
 #include "uplift/mesh/cell_shapes.h"
 #include "uplift/mesh/parts.h"
 #include "uplift/mesh/quality.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "uplift/mesh/box.h"
+#include "simple_meshes.h"
 #include "uplift/mesh/sides.h"
 
 // Slow and obvious views of a mesh, independent of mesh/sides.h.

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "uplift/mesh/box.h"
+#include "simple_meshes.h"
 
 // Moving a mesh against a plane: what the mesh describes stays, and no cell turns inside out.
 namespace uplift::shift_test {

@@ -8,6 +8,7 @@ namespace uplift::checks_test {
 namespace {
 
 using support::here;
+using support::loose_part;
 
 TEST(Interfaces, FootingSeesTheRigidMotion) {
   const Model model = support::block_on_ground(2, {0, 1}, false)->finish();

@@ -5,16 +5,17 @@
 #include <array>
 #include <random>
 
+#include "simple_meshes.h"
 #include "unit/model/model_support.h"
 #include "uplift/elements/solid.h"
 #include "uplift/elements/space_beam.h"
-#include "uplift/mesh/box.h"
 #include "uplift/model/check.h"
 
 namespace uplift::mechanism_test {
 namespace {
 
 using support::here;
+using support::loose_part;
 
 SolidSection soft_soil() {
   SolidSection section;

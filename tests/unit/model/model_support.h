@@ -10,11 +10,18 @@
 #include "uplift/elements/discrete.h"
 #include "uplift/math/dense.h"
 #include "uplift/model/builder.h"
+#include "uplift/model/check.h"
 
 // What several tests of elements, interfaces and models share.
 namespace uplift::support {
 
 inline const Where here{"case.toml", 7};
+
+/// How the model can move without resistance with its interfaces closed, in words; empty when it cannot.
+inline std::string loose_part(const Model& model, Resistance resistance = Resistance::stiffness) {
+  const Vector motion = unresisted_motion(model, resistance);
+  return motion.size() == 0 ? std::string() : describe_motion(model, motion);
+}
 
 /// A linear joint: traction = stiffness * opening per component.
 class LinearLaw : public InterfaceLaw {

@@ -7,9 +7,9 @@
 #include <random>
 
 #include "ran_support.h"
+#include "simple_meshes.h"
 #include "unit/model/model_support.h"
 #include "uplift/elements/solid.h"
-#include "uplift/mesh/box.h"
 #include "uplift/model/builder.h"
 #include "uplift/run/force_rows.h"
 

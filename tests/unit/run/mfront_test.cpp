@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simple_meshes.h"
 #include "unit/run/plastic_support.h"
-#include "uplift/mesh/box.h"
 
 namespace uplift::mfront_test {
 using namespace plastic_test;

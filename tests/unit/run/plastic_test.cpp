@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "simple_meshes.h"
 #include "text_support.h"
 #include "unit/elements/solid_support.h"
 #include "unit/run/plastic_support.h"
@@ -14,7 +15,6 @@
 #include "uplift/elements/solid_nonlinear.h"
 #include "uplift/io/fields/run_frames.h"
 #include "uplift/io/text/toml.h"
-#include "uplift/mesh/box.h"
 #include "uplift/run/run_state.h"
 
 namespace uplift::plastic_test {

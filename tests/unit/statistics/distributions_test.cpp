@@ -69,6 +69,12 @@ TEST(Distributions, Student) {
   EXPECT_NEAR(student_two_sided(0.9, 1e8), 1.6448536269514726, 1e-7);
 }
 
+/// Clopper & Pearson's interval of a probability from k of n trials: each end has the error probability (1 - level)/2 at most.
+ConfidenceInterval clopper_pearson(double k, double n, double level) {
+  const double each = (1 - level) / 2;
+  return {k > 0 ? incomplete_beta_inverse(k, n - k + 1, each) : 0, k < n ? 1 - incomplete_beta_inverse(n - k, k + 1, each) : 1};
+}
+
 TEST(Distributions, ClopperPearson) {
   EXPECT_EQ(clopper_pearson(0, 20, 0.95).lower, 0);
   EXPECT_NEAR(*clopper_pearson(0, 20, 0.95).upper, 1 - std::pow(0.025, 0.05), 1e-12);

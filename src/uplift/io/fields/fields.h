@@ -118,15 +118,12 @@ class VtuWriter {
 /// Writes "<stem>.h5" and "<stem>.xdmf", which belong into one folder. Frames are described in the order of time.
 class XdmfWriter {
  public:
-  /// The frames go to `data`: a file on the disk (then it must be "<stem>.h5") or in memory, where all of them stay until the end
-  /// (and are copied once more then).
-  XdmfWriter(const std::string& stem, std::vector<FieldMesh> blocks, FieldPrecision precision, Hdf5Writer data = Hdf5Writer::in_memory());
+  /// The frames go to `data`, which is to be "<stem>.h5" beside the description.
+  XdmfWriter(const std::string& stem, std::vector<FieldMesh> blocks, FieldPrecision precision, Hdf5Writer data);
   /// Nothing is written, and the frame does not count, when it has a trouble.
   [[nodiscard]] std::optional<FieldTrouble> write(const FieldFrame& frame);
-  /// Writes the description: "<stem>.xdmf". Frames on the disk are complete after this. To be called once, at the end.
+  /// Writes the description: "<stem>.xdmf". The frames are complete after this. To be called once, at the end.
   void finish(const WriteFile& write);
-  /// The same, and the frames themselves, for data in memory.
-  void finish_with_data(const WriteFile& write);
 
  private:
   std::string stem_;

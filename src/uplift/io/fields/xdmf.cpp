@@ -257,9 +257,4 @@ void XdmfWriter::finish(const WriteFile& write) {
   write(stem_ + ".xdmf", std::string(domain_head) + in_order_of_time(list_) + std::string(domain_tail));
 }
 
-void XdmfWriter::finish_with_data(const WriteFile& write) {
-  write(stem_ + ".h5", data_.image());
-  finish(write);
-}
-
 }  // namespace uplift

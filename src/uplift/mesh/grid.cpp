@@ -1,4 +1,4 @@
-#include "uplift/mesh/box.h"
+#include "uplift/mesh/grid.h"
 
 #include <algorithm>
 #include <array>
@@ -125,14 +125,6 @@ constexpr Way space_ways[] = {{Direction::left, 0, {-1, 0, 0}}, {Direction::righ
 
 }  // namespace
 
-std::vector<double> uniform_lines(double from, double to, int cells) {
-  assert(cells >= 1 && to > from);
-  std::vector<double> lines;
-  for (int i = 0; i < cells; ++i) lines.push_back(from + (to - from) * i / cells);
-  lines.push_back(to);
-  return lines;
-}
-
 std::vector<double> graded_lines(double from, const std::vector<Stretch>& stretches, double growth) {
   assert(growth > 1 && !stretches.empty());
   const std::size_t n = stretches.size();
@@ -146,14 +138,6 @@ std::vector<double> graded_lines(double from, const std::vector<Stretch>& stretc
     fill(lines, stretches[i].to, size[i], size[i + 1], stretches[i].size, growth);
   }
   return lines;
-}
-
-std::vector<double> refined_lines(double from, double fine_from, double fine_to, double to, double size, double largest, double growth) {
-  std::vector<Stretch> stretches;
-  if (fine_from > from) stretches.push_back({fine_from, std::max(size, largest)});
-  stretches.push_back({fine_to, size});
-  if (to > fine_to) stretches.push_back({to, std::max(size, largest)});
-  return graded_lines(from, stretches, growth);
 }
 
 std::string_view name_of(Direction direction) {
@@ -204,20 +188,6 @@ Mesh with_cells(Mesh mesh, Cell cell) {
   if (linear == Cell::wedge6) mesh = to_wedges(mesh);
   if (cell != linear) mesh = to_second_degree(mesh, cell == Cell::quad9 || cell == Cell::hex27);
   return mesh;
-}
-
-Mesh rectangle(const std::vector<double>& x, const std::vector<double>& y, Cell cell) {
-  const auto side = [](int, Direction direction, int) { return std::string(name_of(direction)); };
-  return with_cells(grid(
-                        {x, y, {}}, [](int, int, int) { return 0; }, {"volume"}, side),
-                    cell);
-}
-
-Mesh box(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z, Cell cell) {
-  const auto side = [](int, Direction direction, int) { return std::string(name_of(direction)); };
-  return with_cells(grid(
-                        {x, y, z}, [](int, int, int) { return 0; }, {"volume"}, side),
-                    cell);
 }
 
 }  // namespace uplift

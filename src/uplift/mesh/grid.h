@@ -6,13 +6,10 @@
 
 #include "uplift/mesh/mesh.h"
 
-// Structured meshes on straight lines, for examples, tests and first studies.
+// Structured meshes on straight lines.
 namespace uplift {
 
 // ---- lines of one axis: ascending coordinates [m] ----
-
-/// `cells` equal cells; both ends are met exactly.
-std::vector<double> uniform_lines(double from, double to, int cells);
 
 /// A stretch of an axis that ends at `to` [m]; its cells are not longer than `size` [m].
 struct Stretch {
@@ -21,9 +18,6 @@ struct Stretch {
 /// Stretches one after another from `from`; all ends are met exactly. Where stretches meet, cells start with the smaller size of the two
 /// and grow by at most the factor `growth` > 1 from cell to cell up to their own size, so that fine stretches fade into coarse ones.
 std::vector<double> graded_lines(double from, const std::vector<Stretch>& stretches, double growth);
-
-/// Uniform cells of at most `size` in [fine_from, fine_to], growing away from it by at most `growth` up to `largest` at `from` and `to`.
-std::vector<double> refined_lines(double from, double fine_from, double fine_to, double to, double size, double largest, double growth);
 
 // ---- grids ----
 
@@ -47,10 +41,5 @@ Mesh grid(const Grid& lines, const PartOf& part_of, const std::vector<std::strin
 
 /// The same mesh of bricks or quadrilaterals with other cells: any type of the mesh's dimension.
 Mesh with_cells(Mesh mesh, Cell cell);
-
-/// Rectangle of any surface type. Groups: "volume", "left", "right", "bottom", "top".
-Mesh rectangle(const std::vector<double>& x, const std::vector<double>& y, Cell cell = Cell::quad4);
-/// Box of any volume type. Groups: "volume", "left", "right" (x), "front", "back" (y), "bottom", "top" (z).
-Mesh box(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z, Cell cell = Cell::hex8);
 
 }  // namespace uplift
