@@ -7,6 +7,7 @@ import re
 import sys
 
 ORDER = "base math statistics mesh laws elements interface model linear contact dynamics reduction motion run case verdict study io session capi ensemble cli distributed".split()
+PARTS_OF = {"contact": "kernel newton lagrange impact".split()}  # folders of a layer, in order; its own files stand before all of them
 ROOT = pathlib.Path(__file__).resolve().parent.parent / "src" / "uplift"
 
 # A key of a table is read by its name where it is declared. Up to the layer of motions that is a folder of parts: a law reads its own
@@ -59,6 +60,11 @@ for path in sorted(ROOT.rglob("*")):
         include = re.match(r'\s*#include "uplift/([a-z]+)/', line)
         if include and ORDER.index(include.group(1)) > ORDER.index(layer):
             mistakes.append(f"{place}: layer {layer} includes {include.group(1)}, which is to its right")
+        part = re.match(r'\s*#include "uplift/([a-z]+)/([a-z]+)/', line)
+        if part and layer == part.group(1) and layer in PARTS_OF:
+            own, order = path.relative_to(ROOT).parts[1], PARTS_OF[layer]
+            if own not in order or order.index(part.group(2)) > order.index(own):
+                mistakes.append(f"{place}: {layer}/{own} includes {part.group(2)}, which is to its right ({' <- '.join(order)})")
         if re.match(r"\s*#include <(Eigen|unsupported/Eigen)", line) and layer != "math":
             mistakes.append(f"{place}: Eigen is included outside math")
         for key in (next(filter(None, found)) for found in KEY_READ.findall(line)):

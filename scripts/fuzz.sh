@@ -21,7 +21,7 @@ sources() {
     toml) printf '%s\n' "${base[@]}" src/uplift/io/text/toml.cpp ;;
     record) printf '%s\n' "${base[@]}" src/uplift/base/sha256.cpp src/uplift/motion/{motion,record_check}.cpp src/uplift/motion/formats/{read,column_reader,record_text,at2,columns,cosmos,csmip,esm,knet,smc}.cpp ;;
     json) printf '%s\n' "${base[@]}" src/uplift/io/text/json_reader.cpp ;;
-    problem) printf '%s\n' "${declared[@]}" src/uplift/math/{quadrature,product_kernels}.cpp src/uplift/contact/{jumps,problem,problem_file,newton/law_force}.cpp src/uplift/laws/*.cpp ;;
+    problem) printf '%s\n' "${declared[@]}" src/uplift/math/{quadrature,product_kernels}.cpp src/uplift/contact/{jumps,problem,problem_file,law_force}.cpp src/uplift/laws/*.cpp ;;
     *) echo "fuzz.sh: expected gmsh, med, toml, json, record or problem, found \"$1\"" >&2; exit 2 ;;
   esac
 }

@@ -1,12 +1,10 @@
 #include <array>
 
-#include "uplift/contact/impact/impact.h"
 #include "uplift/contact/method.h"
 
 namespace uplift {
 
 #define METHOD(name) const Entry<ContactMethod>& entry_method_##name();
-#define IMPACT(name) const Entry<ImpactRule>& entry_impact_##name();
 #include "uplift/parts.def"
 
 std::span<const Entry<ContactMethod>* const> method_catalog() {
@@ -34,19 +32,6 @@ std::string_view other_exact_method(std::string_view method) {
     if (name != method && (*entry)->make(standard)->constrains()) return name;
   }
   return {};
-}
-
-std::span<const Entry<ImpactRule>* const> impact_catalog() {
-  static const std::array entries{
-#define IMPACT(name) &entry_impact_##name(),
-#include "uplift/parts.def"
-  };
-  return entries;
-}
-
-std::span<const PartInfo* const> impact_rules() {
-  static const std::vector<const PartInfo*> infos(impact_catalog().begin(), impact_catalog().end());
-  return infos;
 }
 
 }  // namespace uplift

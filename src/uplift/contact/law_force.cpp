@@ -1,4 +1,4 @@
-#include "uplift/contact/problem.h"
+#include "uplift/contact/law_force.h"
 
 namespace uplift {
 namespace {

@@ -31,7 +31,7 @@ class ContactMethod {
   virtual bool constrains() const = 0;
   /// A method that regularises constraints puts a traction law in the place of a cone (penalty); null when it does not. `flexibility` is
   /// the largest area * F_ii of the interface's normal rows [m3/N], which scales an automatic stiffness.
-  virtual std::unique_ptr<const InterfaceLaw> substitute(const Cone&, double flexibility) const;
+  virtual std::unique_ptr<const InterfaceLaw> substitute(const Cone&, double /*flexibility*/) const { return nullptr; }
 };
 
 /// Nothing touches: for models without an interface and for what is computed before a method is chosen.
@@ -41,9 +41,6 @@ class NoContact final : public ContactMethod {
   Outcome solve(const InterfaceProblem&, MethodWork&, InterfaceSolution&) const override { return {}; }
   bool constrains() const override { return false; }
 };
-
-/// Largest area * F_ii [m3/N] over the normal rows of a block: the displacement of a point under a unit pressure on its own area.
-double flexibility(const ContactModel&, const Block&);
 
 std::span<const Entry<ContactMethod>* const> method_catalog();  // "newton", "penalty", "augmented_lagrangian", "lagrange"
 std::span<const PartInfo* const> contact_methods();

@@ -74,6 +74,12 @@ struct ContactModel {
   int rows() const { return static_cast<int>(factor.rows()); }
 };
 
+/// Largest area * F_ii [m3/N] over the normal rows of a block: the displacement of a point under a unit pressure on its own area.
+double flexibility(const ContactModel&, const Block&);
+
+/// H += C_left^T diag(weight) C_right for as many rows as there are weights, from rows `left` and `right` on.
+void add_weighted_gram(const ContactModel&, Index left, Index right, const ConstMap& weight, Matrix& work, Matrix& hessian);
+
 /// The model that work space was made for.
 class SeenModel {
  public:

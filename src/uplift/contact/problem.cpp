@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "uplift/contact/law_force.h"
+
 namespace uplift {
 namespace {
 
@@ -90,6 +92,20 @@ InterfaceProblem problem_of(std::shared_ptr<const ContactModel> model) {
   for (Vector* v : {&problem.free_opening, &problem.from}) v->setZero(rows);
   problem.old.setZero(history);
   return problem;
+}
+
+void size_solution(const InterfaceProblem& problem, InterfaceSolution& solution) {
+  const Index rows = problem.rows(), r = problem.model->factor.cols();
+  std::size_t points = 0;
+  for (const Block& block : problem.model->blocks) points += static_cast<std::size_t>(block.batch.points);
+  if (solution.opening.size() == rows && solution.force.size() == rows && solution.z.size() == r && solution.status.size() == points &&
+      solution.now.size() == problem.old.size())
+    return;
+  if (solution.z.size() != r) solution.z.setZero(r);
+  if (solution.status.size() != points) solution.status.assign(points, Status::open);
+  solution.opening.setZero(rows);
+  if (solution.force.size() != rows) solution.force.setZero(rows);
+  solution.now.setZero(problem.old.size());
 }
 
 double contact_residual(const InterfaceProblem& problem, const InterfaceSolution& solution) {

@@ -64,6 +64,9 @@ struct InterfaceSolution {
   InterfaceSystems systems;
 };
 
+/// Sizes opening, force, status, now, and z for the problem; does nothing when they fit.
+void size_solution(const InterfaceProblem&, InterfaceSolution&);
+
 struct Outcome {
   bool converged = false;
   int iterations = 0;
@@ -80,10 +83,6 @@ struct Outcome {
 double contact_residual(const InterfaceProblem&, const InterfaceSolution&);
 /// The same without allocating after the first call.
 double contact_residual(const InterfaceProblem&, const InterfaceSolution&, ResidualScratch&);
-
-/// Force of a law block [N] and its slope [N/m], scale * area times those of the law for the way from problem.from to `opening` (all rows;
-/// path-averaged where the problem says so). `response` points to the block's own rows, as in InterfaceLaw; `end` stays a traction.
-void law_force(const InterfaceProblem&, const Block&, const double* opening, const LawResponse& response);
 
 /// JSON text of a problem with its laws (names and parameters) and back. Throws InputError with the position on bad files.
 std::string save_problem(const InterfaceProblem&, const std::vector<const Values*>& behaviours, const std::string& reason);

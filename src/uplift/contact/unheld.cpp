@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "uplift/contact/law_force.h"
 #include "uplift/laws/macro_element.h"
 
 namespace uplift {

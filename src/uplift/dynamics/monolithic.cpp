@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "uplift/contact/law_force.h"
 #include "uplift/math/dense.h"
 
 namespace uplift {

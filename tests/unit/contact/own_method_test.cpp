@@ -4,6 +4,7 @@
 
 #include "property/oracle_models.h"
 #include "unit/contact/contact_support.h"
+#include "uplift/contact/law_force.h"
 
 // A method that knows no other one: what a run needs of a path-averaging method are its results alone, and its work space stays its own.
 namespace uplift::contact_test::own_method_test {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "uplift/contact/lagrange/augmentation.h"
 #include "uplift/contact/lagrange/force_share.h"
 #include "uplift/contact/lagrange/lagrange.h"
-#include "uplift/contact/method.h"
 #include "uplift/contact/newton/newton.h"
 #include "uplift/contact/point_rows.h"
 
@@ -16,19 +16,6 @@
 // updates leave open how redundant points (a rigid footing on many of them) share their force; force_share.h tells it, as for the
 // multipliers alone (lagrange).
 namespace uplift {
-
-void augmentation(const ContactModel& model, double factor, Vector& stiffness) {
-  stiffness.resize(model.rows());
-  double largest = 0;
-  for (Index i = 0; i < stiffness.size(); ++i) largest = std::max(largest, stiffness[i] = model.factor.row(i).squaredNorm());
-  for (const Block& block : model.blocks) {
-    const int n = block.batch.points;
-    for (int i = block.first; block.batch.components == 3 && i < block.first + n; ++i)
-      stiffness[i] = stiffness[i + n] = 0.5 * (stiffness[i] + stiffness[i + n]);
-  }
-  for (Index i = 0; i < stiffness.size(); ++i)
-    stiffness[i] = factor / (stiffness[i] > 1e-12 * largest ? stiffness[i] : std::max(largest, 1e-300));
-}
 
 namespace {
 

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uplift/contact/lagrange/augmentation.h"
+#include "uplift/contact/lagrange/failures.h"
 #include "uplift/contact/lagrange/force_share.h"
+#include "uplift/contact/lagrange/lagrange.h"
 #include "uplift/contact/lagrange/status.h"
 #include "uplift/contact/newton/newton.h"
 

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uplift/contact/kernel/kernel.h"
+#include "uplift/contact/lagrange/failures.h"
 #include "uplift/contact/lagrange/lagrange.h"
+#include "uplift/contact/lagrange/laws.h"
 #include "uplift/math/dense.h"
 
 // Sequential quadratic programming in z. At the iterate z_k, with the gradient g of the potential (without multipliers) and a Hessian H = L

@@ -1,11 +1,10 @@
 #include "uplift/contact/lagrange/lagrange.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "uplift/contact/method.h"
+#include "uplift/contact/kernel/kernel.h"
+#include "uplift/contact/lagrange/failures.h"
 #include "uplift/contact/newton/newton.h"
 #include "uplift/contact/point_rows.h"
 #include "uplift/math/small.h"
@@ -128,41 +127,6 @@ class LagrangeMethod final : public ContactMethod {
 };
 
 }  // namespace
-
-std::string kernel_failure(const ContactModel& model, const KernelReply& reply, std::ptrdiff_t first) {
-  if (reply.end == KernelEnd::inconsistent)
-    return fmt::format("contradictory constraints: no motion of the structure opens {}", point_name(model, first + reply.worst));
-  if (reply.end == KernelEnd::not_finite) return "the openings are not finite";
-  return fmt::format("the active set did not settle in {} iterations, the dual method included", reply.iterations);
-}
-
-std::string point_name(const ContactModel& model, std::ptrdiff_t row) {
-  for (const Block& block : model.blocks)
-    if (row >= block.first && row < block.first + block.rows())
-      return fmt::format("point {} of '{}'", (row - block.first) % block.batch.points + 1, block.name);
-  return fmt::format("row {}", row);
-}
-
-std::string point_names(const ContactModel& model, const std::vector<std::ptrdiff_t>& rows, std::size_t most) {
-  std::string text;
-  for (std::size_t k = 0; k < rows.size() && k < most; ++k) text += (k > 0 ? ", " : "") + point_name(model, rows[k]);
-  if (rows.size() > most) text += fmt::format(" and {} more", rows.size() - most);
-  return text;
-}
-
-void size_solution(const InterfaceProblem& problem, InterfaceSolution& solution) {
-  const Index rows = problem.rows(), r = problem.model->factor.cols();
-  std::size_t points = 0;
-  for (const Block& block : problem.model->blocks) points += static_cast<std::size_t>(block.batch.points);
-  if (solution.opening.size() == rows && solution.force.size() == rows && solution.z.size() == r && solution.status.size() == points &&
-      solution.now.size() == problem.old.size())
-    return;
-  if (solution.z.size() != r) solution.z.setZero(r);
-  if (solution.status.size() != points) solution.status.assign(points, Status::open);
-  solution.opening.setZero(rows);
-  if (solution.force.size() != rows) solution.force.setZero(rows);
-  solution.now.setZero(problem.old.size());
-}
 
 const Entry<ContactMethod>& entry_method_lagrange() {
   static const Entry<ContactMethod> entry{

@@ -1,10 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <optional>
-#include <string>
-#include <vector>
 
-#include "uplift/contact/kernel/kernel.h"
 #include "uplift/contact/method.h"
 
 // Lagrange multipliers: the constraints of the cone blocks hold exactly, law blocks keep their traction law in the same problem.
@@ -32,26 +29,9 @@ Outcome solve_frictionless(const InterfaceProblem&, const LagrangeOptions&, std:
 /// made at the first call.
 Outcome solve_frictional(const InterfaceProblem&, const LagrangeOptions&, std::unique_ptr<MethodWork>& work, InterfaceSolution&);
 
-/// Forces of the law blocks at solution.opening, scaled: fills their rows of solution.force and solution.now; `slope` (null: not wanted)
-/// gets d force_r / d opening_c of block b, component-major, at [first_slope[b] + (r * components + c) * points + i] [N/m].
-void law_forces(const InterfaceProblem&, const std::vector<int>& first_slope, double* slope, InterfaceSolution&);
-/// Where the slopes of each block begin, and (last entry) how many there are.
-void slope_offsets(const ContactModel&, std::vector<int>& offsets);
-/// H += C^T k C of the law blocks. `convex`: of each slope only the positive diagonal, for a Hessian that must be positive definite; the
-/// slopes are cut in place. `work` has the size of C.
-void add_law_slopes(const ContactModel&, const std::vector<int>& first_slope, Vector& slope, bool convex, Matrix& work, Matrix& hessian);
-/// H += C_left^T diag(weight) C_right for as many rows as there are weights, from rows `left` and `right` on.
-void add_weighted_gram(const ContactModel&, Index left, Index right, const ConstMap& weight, Matrix& work, Matrix& hessian);
 /// When the iterations may stop: below the tolerance, or where the residual is small and does not fall any more (round-off).
-bool settled(double residual, double before, double tolerance);
-
-/// Why the kernel failed, with the point named; `first` is the problem's row of the kernel's row 0.
-std::string kernel_failure(const ContactModel&, const KernelReply&, std::ptrdiff_t first);
-/// "point 3 of 'footing'" for a row.
-std::string point_name(const ContactModel&, std::ptrdiff_t row);
-/// "points 3, 7 of 'footing'; point 1 of 'key'", at most `most` of them.
-std::string point_names(const ContactModel&, const std::vector<std::ptrdiff_t>& rows, std::size_t most = 8);
-/// Sizes opening, force, status, now, and z for the problem.
-void size_solution(const InterfaceProblem&, InterfaceSolution&);
+inline bool settled(double residual, double before, double tolerance) {
+  return residual <= tolerance || (residual <= 1e-9 && residual > 0.5 * before);
+}
 
 }  // namespace uplift

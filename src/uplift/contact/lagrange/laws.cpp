@@ -1,8 +1,9 @@
+#include "uplift/contact/lagrange/laws.h"
+
 #include <algorithm>
 
-#include "uplift/contact/lagrange/lagrange.h"
+#include "uplift/contact/law_force.h"
 
-// Law blocks beside cones: their forces and slopes, for both Lagrange methods.
 namespace uplift {
 
 void slope_offsets(const ContactModel& model, std::vector<int>& offsets) {
@@ -23,12 +24,6 @@ void law_forces(const InterfaceProblem& problem, const std::vector<int>& first_s
   }
 }
 
-void add_weighted_gram(const ContactModel& model, Index left, Index right, const ConstMap& weight, Matrix& work, Matrix& hessian) {
-  const Index n = weight.size();
-  work.topRows(n) = weight.asDiagonal() * model.factor.middleRows(right, n);
-  hessian.noalias() += model.factor.middleRows(left, n).transpose() * work.topRows(n);
-}
-
 void add_law_slopes(const ContactModel& model, const std::vector<int>& first_slope, Vector& slope, bool convex, Matrix& work,
                     Matrix& hessian) {
   for (std::size_t b = 0; b < model.blocks.size(); ++b) {
@@ -44,10 +39,6 @@ void add_law_slopes(const ContactModel& model, const std::vector<int>& first_slo
         add_weighted_gram(model, block.first + row * n, block.first + column * n, ConstMap(k, n), work, hessian);
       }
   }
-}
-
-bool settled(double residual, double before, double tolerance) {
-  return residual <= tolerance || (residual <= 1e-9 && residual > 0.5 * before);
 }
 
 }  // namespace uplift

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uplift/contact/lagrange/augmentation.h"
+#include "uplift/contact/lagrange/laws.h"
 #include "uplift/contact/point_rows.h"
 #include "uplift/math/small.h"
 
@@ -28,16 +30,11 @@ void StatusStep::begin(const InterfaceProblem& problem, double gap_tolerance, In
 }
 
 void StatusStep::list_points() {
-  const InterfaceProblem& problem = *problem_;
-  const Index rows = problem.rows();
-  moved_.setZero();
-  for (Index k = 0; k < problem.model->factor.cols(); ++k)
-    for (Index i = 0; i < rows; ++i) moved_[i] += problem.model->factor(i, k) * problem.model->factor(i, k);
-  const double largest = rows > 0 ? moved_.maxCoeff() : 0;
-  const auto rho = [&](Index row) { return 1 / (moved_[row] > 1e-12 * largest ? moved_[row] : std::max(largest, 1e-300)); };
+  const double largest = row_compliances(*problem_->model, moved_);
+  const auto rho = [&](Index row) { return 1 / divisor(moved_[row], largest); };
   points_.clear();
   Index index = 0;
-  for (const Block& block : problem.model->blocks)
+  for (const Block& block : problem_->model->blocks)
     for (int i = 0; i < block.batch.points; ++i, ++index) {
       if (block.cone == nullptr) continue;
       FrictionPoint point;

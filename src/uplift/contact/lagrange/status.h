@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "uplift/contact/lagrange/lagrange.h"
 #include "uplift/contact/orthonormal.h"
+#include "uplift/contact/problem.h"
 #include "uplift/math/dense.h"
 
 namespace uplift {

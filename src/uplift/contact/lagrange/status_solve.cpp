@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uplift/contact/lagrange/laws.h"
 #include "uplift/contact/lagrange/status.h"
 #include "uplift/contact/point_rows.h"
 #include "uplift/math/small.h"

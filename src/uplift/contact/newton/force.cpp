@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "uplift/contact/law_force.h"
 #include "uplift/contact/newton/newton.h"
 #include "uplift/math/small.h"
 

@@ -6,9 +6,9 @@
 namespace uplift {
 namespace {
 
-constexpr int enough = 12;           // iterations that cost less than a factor
-constexpr double round_off = 1e-13;  // residual that counts as none, of the right side
-constexpr double accurate = 1e-8;    // residual after a new factor, which iterations cannot mend
+constexpr int cheap_iterations = 12;  // iterations that cost less than a factor
+constexpr double round_off = 1e-13;   // residual that counts as none, of the right side
+constexpr double accurate = 1e-8;     // residual after a new factor, which iterations cannot mend
 
 /// W_row . jump
 double felt(const SparseRows& rows, Index row, const Vector& jump) {
@@ -48,8 +48,8 @@ void JumpDirection::begin(const ContactModel& model) {
   model.jumps.lower.triangularView<lower_triangle>().solveInPlace(inverse);
   stiffness_.noalias() = inverse.transpose() * inverse;
   for (Vector* v : {&rest_, &weight_, &solution_, &direction_, &image_, &right_}) v->setZero(r);
-  directions_.resize(r, enough);
-  images_.resize(r, enough);
+  directions_.resize(r, cheap_iterations);
+  images_.resize(r, cheap_iterations);
   places_.clear();
   Index slope = 0;
   for (const Block& block : model.blocks) {
@@ -183,7 +183,7 @@ bool JumpDirection::solve(const InterfaceProblem& problem, NewtonWork& work, Int
   right_ = -work.gradient;
   lower.transpose().solveInPlace(right_);
   if (valid_) list_changes(work.slope, false);
-  const bool iterated = valid_ && iterate(changes_.empty() ? 1 : enough);
+  const bool iterated = valid_ && iterate(changes_.empty() ? 1 : cheap_iterations);
   ++(iterated ? counts.iterated : counts.factored);
   if (!iterated) valid_ = solve_anew(work.slope);
   work.direction = solution_;

@@ -1,6 +1,5 @@
 #include "uplift/contact/newton/many.h"
 
-#include "uplift/contact/lagrange/lagrange.h"
 #include "uplift/contact/newton/jump_direction.h"
 #include "uplift/contact/point_rows.h"
 #include "uplift/math/dense.h"

@@ -17,10 +17,6 @@ struct AugmentedForce {
   const Vector* stiffness = nullptr;   // rows [N/m]
 };
 
-/// Stiffness of every row for the augmentation [N/m]: factor / F_ii, of the whole interface where a row has no compliance. The tangential
-/// rows of a point share that of their mean compliance: the trial force must not turn.
-void augmentation(const ContactModel&, double factor, Vector& stiffness);
-
 struct NewtonOptions {
   double tolerance = 1e-12;  // |G| relative to |z| + |C^T p|
   int most_iterations = 60;

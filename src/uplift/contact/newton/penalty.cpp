@@ -9,19 +9,6 @@
 // the most flexible point.
 namespace uplift {
 
-std::unique_ptr<const InterfaceLaw> ContactMethod::substitute(const Cone&, double) const {
-  return nullptr;
-}
-
-double flexibility(const ContactModel& model, const Block& block) {
-  double largest = 0;
-  for (int i = 0; i < block.batch.points; ++i) {
-    const double compliance = model.factor.row(block.first + block.batch.normal() + i).squaredNorm();
-    largest = std::max(largest, compliance * block.area[static_cast<std::size_t>(i)]);
-  }
-  return largest;
-}
-
 namespace {
 
 Raw raw_number(double value) {
