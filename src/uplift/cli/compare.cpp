@@ -34,7 +34,7 @@ void print_runs(const Results& results, const ComparisonSummary& compared) {
     const bool bonded = results.specs[i].bonded;  // it stretches instead of opening
     rows.push_back({run.label, status_text(run), motion ? format_quantity(std::abs(motion->value), "m") : "-",
                     bonded ? "-" : percent(run.max_uplifted_ratio.value),
-                    bonded ? "-" : format_value(*find_verdict_quantity("max_opening"), run.max_opening.value),
+                    bonded ? "-" : format_value(*QuantityName("max_opening"), run.max_opening.value),
                     format_quantity(std::abs(run.max_base_moment.value), "N m"), percent(created_share(run)),
                     percent(run.energy_scale > 0 ? run.energy_lost / run.energy_scale : 0), std::string(to_string(agreement.word)),
                     counted ? percent(agreement.deviation) : "-"});

@@ -183,11 +183,11 @@ void print_choices(const Field& field) {
 int describe_quantities(const std::string& name) {
   std::vector<std::vector<std::string>> rows{{"  quantity", "unit", "of", "limit", "meaning"}};
   std::vector<std::string> known;
-  for (const VerdictQuantity& each : verdict_quantities()) {
+  for (const VerdictQuantity& each : verdict_quantities) {
     known.emplace_back(each.name);
     if (!name.empty() && each.name != name) continue;
-    std::string of = each.of_beam ? "beam" : "run";
-    if (each.of_interface) of = !each.of_wall ? "base" : each.of_base ? "base, wall" : "wall";
+    std::string of = each.of_beam() ? "beam" : "run";
+    if (each.of_interface()) of = !each.of_wall() ? "base" : each.of_base() ? "base, wall" : "wall";
     rows.push_back(
         {"  " + std::string(each.name), std::string(each.unit), of, each.at_least ? "at least" : "at most", std::string(each.meaning)});
   }
@@ -226,7 +226,7 @@ bool describe_name(const std::string& name, const std::vector<Family>& all) {
   if (found > 0) return true;  // the table [[beam]] has the keys of the element
   for (const Place& place : places())
     if (place.path == name || place.path.ends_with("." + name)) return describe_section(name), true;
-  for (const VerdictQuantity& quantity : verdict_quantities())
+  for (const VerdictQuantity& quantity : verdict_quantities)
     if (quantity.name == name) return describe_quantities(name), true;
   return false;
 }
@@ -237,7 +237,7 @@ std::vector<std::string> all_names(const std::vector<Family>& all) {
   for (const Family& family : all)
     for (const PartInfo* part : family.parts) names.emplace_back(part->name);
   for (const Place& place : places()) names.push_back(place.path.substr(place.path.rfind('.') + 1));
-  for (const VerdictQuantity& quantity : verdict_quantities()) names.emplace_back(quantity.name);
+  for (const VerdictQuantity& quantity : verdict_quantities) names.emplace_back(quantity.name);
   return names;
 }
 

@@ -27,7 +27,7 @@ std::string value_text(const VerdictNumbers& numbers, const CriterionResult& res
   const VerdictQuantity& quantity = *result.criterion.quantity;
   for (const InterfaceVerdict& each : numbers.interfaces)
     if (each.name == result.interface)
-      if (const VerdictNumber* number = find_number(each.numbers, quantity.name); number && number->value == *result.value)
+      if (const VerdictNumber* number = find_number(each.numbers, quantity); number && number->value == *result.value)
         return text_of(*number);
   return format_value(quantity, *result.value);
 }

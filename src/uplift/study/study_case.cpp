@@ -177,10 +177,10 @@ void check_samples(const StudyCase& study) {
 void check_limits(const StudyCase& study) {
   const CaseInput& input = *study.read.input;
   for (const StudyLimit& limit : study.plan.limits) {
-    if (limit.quantity == nullptr || (limit.of.empty() && !limit.quantity->of_beam)) continue;
+    if (limit.quantity == nullptr || (limit.of.empty() && !limit.quantity->of_beam())) continue;
     const CaseTable& table = limit.given;
     std::vector<std::string> known;
-    if (limit.quantity->of_beam) {
+    if (limit.quantity->of_beam()) {
       for (const CaseEnvelope& envelope : input.output.envelopes) known.push_back(envelope.beam.name);
       if (known.empty()) fail(table, "quantity", "a case with [[output.beam_envelope]], which gives this number", "none");
     } else {

@@ -15,9 +15,9 @@ struct Reached {
 };
 
 /// `least`: a smaller number is noise.
-void add_number(std::vector<VerdictNumber>& numbers, std::string_view name, const Reached& reached, const Reached* bonded, double least) {
+void add_number(std::vector<VerdictNumber>& numbers, QuantityName name, const Reached& reached, const Reached* bonded, double least) {
   VerdictNumber number;
-  number.quantity = find_verdict_quantity(name);
+  number.quantity = name;
   number.value = reached.value;
   number.time = reached.time;
   number.least = least;
@@ -64,7 +64,8 @@ std::optional<Reached> largest_peak(const RunResult& run, Wanted wanted) {
 
 /// Storey shears, or drift ratios. In space the number of both axes together is the length of the vector.
 struct Storeys {
-  std::string_view together, along_x, along_y, unit;
+  QuantityName together, along_x, along_y;
+  std::string_view unit;
   bool is(const Request& column) const { return column.unit == unit && (unit == "N" ? column.level.has_value() : column.below >= 0); }
 
   /// One axis of all storeys, or of the one with the column of this name.
@@ -97,17 +98,17 @@ std::vector<BeamVerdict> beam_verdicts(const RunResult& run, const RunResult* bo
     BeamVerdict verdict{envelope.beam, {}};
     const double least = noise_share * std::max(range_of_forces(envelope), other != nullptr ? range_of_forces(*other) : 0);
     const double length = envelope.sections.empty() ? 0 : envelope.sections.back().along - envelope.sections.front().along;
-    const auto add = [&](std::string_view name, std::string_view change, std::string_view component, int sign) {
+    const auto add = [&](QuantityName name, const VerdictQuantity* change, std::string_view component, int sign) {
       const Reached reached = largest(envelope, component, sign);
       const Reached reference = other != nullptr ? largest(*other, component, sign) : Reached{};
       add_number(verdict.numbers, name, reached, other != nullptr ? &reference : nullptr, component == "moment" ? least * length : least);
       const std::optional<double> changed = verdict.numbers.back().change;
-      if (!change.empty() && changed) add_number(verdict.numbers, change, {*changed, reached.time}, nullptr, 0);
+      if (change != nullptr && changed) add_number(verdict.numbers, *change, {*changed, reached.time}, nullptr, 0);
     };
-    add("max_beam_compression", "", "axial", -1);
-    add("max_beam_tension", "", "axial", 1);
-    add("max_beam_shear", "change_of_beam_shear", "shear", 0);
-    add("max_beam_moment", "change_of_beam_moment", "moment", 0);
+    add("max_beam_compression", nullptr, "axial", -1);
+    add("max_beam_tension", nullptr, "axial", 1);
+    add("max_beam_shear", QuantityName("change_of_beam_shear"), "shear", 0);
+    add("max_beam_moment", QuantityName("change_of_beam_moment"), "moment", 0);
     verdicts.push_back(std::move(verdict));
   }
   return verdicts;
@@ -118,7 +119,7 @@ void add_storeys(const BuiltCase& built, const RunResult& run, const RunResult* 
                                  Storeys{"max_drift_ratio", "max_drift_ratio_x", "max_drift_ratio_y", "1"}}) {
     const bool in_space = built.model.space.dimension == 3;
     double least = 0;
-    const auto add = [&](std::vector<VerdictNumber>& to, std::string_view name, const auto& of) {
+    const auto add = [&](std::vector<VerdictNumber>& to, QuantityName name, const auto& of) {
       const std::optional<Reached> reached = of(run);
       if (!reached) return;
       const std::optional<Reached> other = bonded != nullptr ? of(*bonded) : std::nullopt;

@@ -35,13 +35,13 @@ std::vector<Compared> peaks_of(const RunResult& result, const std::vector<std::s
 double least_of_number(const VerdictNumber& number, const std::vector<VerdictNumber>& same, const InterfaceVerdict* of,
                        const RunResult& run) {
   const VerdictQuantity& quantity = *number.quantity;
-  const auto value_of = [&](const char* name) {
+  const auto value_of = [&](QuantityName name) {
     const VerdictNumber* found = find_number(same, name);
     return found ? found->value : 0;
   };
   if (quantity.unit == "s") return run.end_time;
   if (quantity.name.starts_with("share_of")) return 1;
-  if (quantity.name == "residual_uplifted_ratio") return value_of("max_uplifted_ratio");
+  if (quantity.is("residual_uplifted_ratio")) return value_of("max_uplifted_ratio");
   if (!quantity.name.starts_with("residual")) return number.least;
   const std::optional<double> width = of ? std::optional(std::max(of->width[0], of->width[1])) : std::nullopt;
   if (quantity.unit == "rad") return width.value_or(0) > 0 ? value_of("max_opening") / *width : 0;
@@ -54,7 +54,7 @@ std::vector<Compared> numbers_of_verdict(const BuiltCase& built, const RunResult
   const auto take = [&](const std::vector<VerdictNumber>& some, const InterfaceVerdict* of) {
     const std::string behind = of && numbers.interfaces.size() > 1 ? " of " + of->name : "";
     for (const VerdictNumber& number : some)
-      if (number.quantity->name != "max_penetration" && std::isfinite(number.value))
+      if (!number.quantity->is("max_penetration") && std::isfinite(number.value))
         made.push_back({std::string(number.quantity->name) + behind, number.value, least_of_number(number, some, of, run)});
   };
   take(numbers.whole, nullptr);

@@ -11,9 +11,9 @@ using Result = CriterionResult::State;
 /// interval without contact.
 CriterionResult result_of(const Criterion& criterion, const std::vector<VerdictNumber>& numbers, const std::string& interface) {
   CriterionResult result{criterion, interface};
-  const VerdictNumber* number = find_number(numbers, criterion.quantity->name);
+  const VerdictNumber* number = find_number(numbers, *criterion.quantity);
   if (!number) {
-    if (criterion.quantity->name == "longest_full_loss" && find_number(numbers, "full_loss_time")) result.state = Result::met;
+    if (criterion.quantity->is("longest_full_loss") && find_number(numbers, "full_loss_time")) result.state = Result::met;
     return result;
   }
   result.value = number->value;
@@ -39,20 +39,20 @@ std::string_view to_string(CriterionResult::State state) {
 }
 
 void add_results(const Criterion& criterion, VerdictNumbers& numbers) {
-  if (criterion.quantity->of_beam) {
+  if (criterion.quantity->of_beam()) {
     for (const BeamVerdict& beam : numbers.beams)
       if (criterion.beam.empty() || beam.name == criterion.beam || beam.name.starts_with(criterion.beam + ", line "))
         numbers.criteria.push_back(result_of(criterion, beam.numbers, beam.name));
     return;
   }
-  if (!criterion.quantity->of_interface) {
+  if (!criterion.quantity->of_interface()) {
     numbers.criteria.push_back(result_of(criterion, numbers.whole, ""));
     return;
   }
   // Without an interface a criterion is for all bases; for all walls where its quantity is one of walls alone.
   const auto concerned = [&](std::size_t k) {
     if (criterion.interface >= 0) return criterion.interface == static_cast<int>(k);
-    return numbers.interfaces[k].role == Role::base ? criterion.quantity->of_base : !criterion.quantity->of_base;
+    return numbers.interfaces[k].role == Role::base ? criterion.quantity->of_base() : !criterion.quantity->of_base();
   };
   for (std::size_t k = 0; k < numbers.interfaces.size(); ++k)
     if (concerned(k)) numbers.criteria.push_back(result_of(criterion, numbers.interfaces[k].numbers, numbers.interfaces[k].name));

@@ -18,8 +18,8 @@ namespace {
 
 /// The largest magnitude of a quantity over the steps, or the least value; nothing when it is nowhere finite.
 template <class Of>
-std::optional<VerdictNumber> extreme(const BaseOverTime& base, std::string_view name, const Of& of, bool least = false) {
-  VerdictNumber found{find_verdict_quantity(name)};
+std::optional<VerdictNumber> extreme(const BaseOverTime& base, QuantityName name, const Of& of, bool least = false) {
+  VerdictNumber found{name};
   for (std::size_t i = 0; i < base.run.steps.size(); ++i) {
     const double value = of(i), now = least ? value : std::abs(value);
     if (std::isfinite(now) && (!found.time || (least ? now < found.value : now > found.value)))
@@ -31,10 +31,10 @@ std::optional<VerdictNumber> extreme(const BaseOverTime& base, std::string_view 
 void add(std::vector<VerdictNumber>& numbers, const std::optional<VerdictNumber>& number) {
   if (number) numbers.push_back(*number);
 }
-void add(std::vector<VerdictNumber>& numbers, std::string_view name, double value, std::optional<double> time = {}) {
-  numbers.push_back({find_verdict_quantity(name), value, time});
+void add(std::vector<VerdictNumber>& numbers, QuantityName name, double value, std::optional<double> time = {}) {
+  numbers.push_back({name, value, time});
 }
-void add(std::vector<VerdictNumber>& numbers, std::string_view name, const StepRecord::Reached& reached) {
+void add(std::vector<VerdictNumber>& numbers, QuantityName name, const StepRecord::Reached& reached) {
   add(numbers, name, reached.value, reached.value != 0 ? std::optional(reached.time) : std::nullopt);
 }
 
@@ -113,23 +113,25 @@ void add_forces(const BaseOverTime& base, std::vector<VerdictNumber>& numbers) {
 
 /// Largest means over one step, where the numbers are means over the window; and the impulse of impacts.
 void add_step_peaks(const StepRecord::Extremes& most, std::vector<VerdictNumber>& numbers) {
-  for (const auto& [name, peak] : {std::pair{"max_shear", most.step_shear},
-                                   {"max_moment", most.step_moment},
-                                   {"max_compression", most.step_compression},
-                                   {"max_toe_pressure", most.step_pressure}})
+  const auto add_peak = [&numbers](QuantityName name, double peak) {
     for (VerdictNumber& number : numbers)
-      if (number.quantity->name == name && peak > 0) number.step_peak = peak;
+      if (number.quantity->is(name) && peak > 0) number.step_peak = peak;
+  };
+  add_peak("max_shear", most.step_shear);
+  add_peak("max_moment", most.step_moment);
+  add_peak("max_compression", most.step_compression);
+  add_peak("max_toe_pressure", most.step_pressure);
   if (most.impulse.value > 0) add(numbers, "max_impulse", most.impulse);
 }
 
 /// Mean over the last tenth of the planned time less the value at rest, and half of the range over which it moves there.
-VerdictNumber residual(const std::vector<BasePose>& tail, std::string_view name, double BasePose::*of, double rest) {
+VerdictNumber residual(const std::vector<BasePose>& tail, QuantityName name, double BasePose::*of, double rest) {
   double sum = 0, least = INFINITY, most = -INFINITY;
   for (const BasePose& pose : tail) {
     sum += pose.*of;
     least = std::min(least, pose.*of), most = std::max(most, pose.*of);
   }
-  return {find_verdict_quantity(name), sum / static_cast<double>(tail.size()) - rest, {}, {}, (most - least) / 2};
+  return {name, sum / static_cast<double>(tail.size()) - rest, {}, {}, (most - least) / 2};
 }
 
 void add_residuals(const BaseOverTime& base, std::vector<VerdictNumber>& numbers) {
@@ -137,8 +139,8 @@ void add_residuals(const BaseOverTime& base, std::vector<VerdictNumber>& numbers
   const std::vector<BasePose>& tail = steps.tail[base.index];
   if (tail.empty() || (base.run.status != RunStatus::completed && base.run.status != RunStatus::interrupted)) return;
   const BasePose rest = steps.rest_poses.empty() ? BasePose() : steps.rest_poses[base.index];
-  const auto left = [&](const char* name, double BasePose::*of) { return residual(tail, name, of, rest.*of); };
-  const auto length = [&](const char* name, double BasePose::*one, double BasePose::*two) {
+  const auto left = [&](QuantityName name, double BasePose::*of) { return residual(tail, name, of, rest.*of); };
+  const auto length = [&](QuantityName name, double BasePose::*one, double BasePose::*two) {
     const VerdictNumber a = left(name, one);
     if (base.interface.space.dimension == 2) return a;  // with its sign, which is that of the history
     const VerdictNumber b = left(name, two);
@@ -185,15 +187,16 @@ InterfaceVerdict carried_by(const BaseOverTime& base) {
 void add_bonded(const BaseOverTime& base, const BaseOverTime& bonded, std::vector<VerdictNumber>& numbers) {
   const InterfaceVerdict reference = carried_by(bonded);
   for (VerdictNumber& number : numbers)
-    if (const VerdictNumber* other = find_number(reference.numbers, number.quantity->name)) {
+    if (const VerdictNumber* other = find_number(reference.numbers, *number.quantity)) {
       number.bonded = other->value;
       number.change = change_of(number.value, other->value, std::max(number.least, other->least));
     }
-  for (const auto& [name, of] :
-       {std::pair{"change_of_shear", "max_shear"}, {"change_of_moment", "max_moment"}, {"change_of_compression", "max_compression"}}) {
-    const VerdictNumber* number = find_number(numbers, of);
-    if (number && number->change) add(numbers, name, *number->change);
-  }
+  const auto add_change = [&numbers](QuantityName name, QuantityName of) {
+    if (const VerdictNumber* number = find_number(numbers, of); number && number->change) add(numbers, name, *number->change);
+  };
+  add_change("change_of_shear", "max_shear");
+  add_change("change_of_moment", "max_moment");
+  add_change("change_of_compression", "max_compression");
   if (base.interface.footprint) return;  // no tension under parts of it is known
   const StepRecord::Reached& pulls = bonded.extremes().tension_area;
   add(numbers, "linear_tension_ratio", pulls);
@@ -202,8 +205,8 @@ void add_bonded(const BaseOverTime& base, const BaseOverTime& bonded, std::vecto
 }
 
 /// A number of the run as a whole, with that of the bonded run.
-void add_whole(std::vector<VerdictNumber>& numbers, std::string_view name, const std::optional<Peak>& peak,
-               const std::optional<Peak>& bonded, double least) {
+void add_whole(std::vector<VerdictNumber>& numbers, QuantityName name, const std::optional<Peak>& peak, const std::optional<Peak>& bonded,
+               double least) {
   if (!peak) return;
   add(numbers, name, std::abs(peak->value), peak->time);
   numbers.back().least = least;
@@ -215,7 +218,7 @@ void add_whole(std::vector<VerdictNumber>& numbers, std::string_view name, const
 void add_motions(const BuiltCase& built, const RunResult& run, const RunResult* bonded, std::vector<VerdictNumber>& numbers) {
   const double range = std::max(range_of_top(built, run), bonded ? range_of_top(built, *bonded) : 0);
   const double least = std::max(noise_share * range, nothing_beside("m"));
-  const auto add_motion = [&](std::string_view name, const auto& of) {
+  const auto add_motion = [&](QuantityName name, const auto& of) {
     add_whole(numbers, name, of(run), bonded ? of(*bonded) : std::nullopt, least);
   };
   add_motion("max_top_motion", [&](const RunResult& each) { return top_motion(built, each); });
@@ -273,8 +276,8 @@ void in_order(std::vector<VerdictNumber>& numbers) {
 
 }  // namespace
 
-const VerdictNumber* find_number(const std::vector<VerdictNumber>& numbers, std::string_view name) {
-  const auto found = std::ranges::find_if(numbers, [&](const VerdictNumber& number) { return number.quantity->name == name; });
+const VerdictNumber* find_number(const std::vector<VerdictNumber>& numbers, QuantityName name) {
+  const auto found = std::ranges::find_if(numbers, [&](const VerdictNumber& number) { return number.quantity->is(name); });
   return found == numbers.end() ? nullptr : &*found;
 }
 

@@ -30,7 +30,7 @@ struct InterfaceVerdict {
   Role role = Role::base;
   double weight = 0, mean_pressure = 0;  // N, Pa: of the static state; 0 when nothing presses
   std::array<double, 2> width{};         // m, along t1 and t2
-  std::vector<VerdictNumber> numbers;    // those that there are, in the order of verdict_quantities()
+  std::vector<VerdictNumber> numbers;    // those that there are, in the order of verdict_quantities
   struct Above {
     double threshold = 0, duration = 0;  // 1, s
   };
@@ -89,8 +89,8 @@ std::string text_of(const VerdictNumber&);
 /// The remaining variation (VerdictNumber::swing): "0.012 mm"; empty when it is at rest.
 std::string swing_text(const VerdictNumber&);
 
-/// The number of this name; null when there is none.
-const VerdictNumber* find_number(const std::vector<VerdictNumber>& numbers, std::string_view name);
+/// The number of this quantity; null when there is none.
+const VerdictNumber* find_number(const std::vector<VerdictNumber>& numbers, QuantityName);
 
 /// Share of a Winkler strip that really uplifts where a linear analysis has tension on the share t: M_lin/M_u = 1/(1 - 2t), and equal
 /// energies (docs/theory, eq 31). Nothing for t >= 1/2, where the linear moment has no bound.

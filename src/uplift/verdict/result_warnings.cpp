@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include "uplift/base/format.h"
 #include "uplift/verdict/step_check.h"
@@ -17,8 +18,8 @@ std::string late_peaks(const RunResult& run, const VerdictNumbers& numbers) {
   const double late = run.steps.time.back() - last_part * (run.steps.time.back() - run.steps.time.front());
   std::vector<std::string> found;
   const auto look = [&](const std::vector<VerdictNumber>& list, const std::string& of) {
-    for (const std::string_view name :
-         {"max_uplifted_ratio", "max_opening", "max_shear", "max_moment", "max_compression", "max_top_motion"})
+    for (const QuantityName name : std::initializer_list<QuantityName>{"max_uplifted_ratio", "max_opening", "max_shear", "max_moment",
+                                                                       "max_compression", "max_top_motion"})
       if (const VerdictNumber* number = find_number(list, name); number && number->time && *number->time > late)
         found.push_back(fmt::format("{}{} at {}", number->quantity->brief, of, format_quantity(*number->time, "s")));
   };

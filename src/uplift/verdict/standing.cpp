@@ -11,7 +11,8 @@ namespace uplift {
 namespace {
 
 struct Said {
-  const char *name, *label;
+  QuantityName name;
+  const char* label;
 };
 constexpr Said standing_numbers[] = {{"max_uplifted_ratio", "Uplifted area"},
                                      {"max_opening", "Largest gap"},
@@ -33,12 +34,12 @@ constexpr Said standing_numbers[] = {{"max_uplifted_ratio", "Uplifted area"},
 /// What is nothing but round-off beside what the base carries is not worth a line.
 bool counts(const InterfaceVerdict& said, const VerdictNumber& number) {
   constexpr double little = 1e-9;
-  const std::string_view name = number.quantity->name;
-  if (name == "max_shear") return number.value > little * said.weight;
-  if (name == "max_moment") return number.value > little * said.weight * std::max(said.width[0], said.width[1]);
-  if (name == "max_eccentricity" || name == "residual_rotation") return std::abs(number.value) > little;
-  if (name == "residual_slip") return std::abs(number.value) > 1e-3 * little;
-  if (name == "min_sliding_safety") return number.value < 1 / little;
+  const VerdictQuantity& quantity = *number.quantity;
+  if (quantity.is("max_shear")) return number.value > little * said.weight;
+  if (quantity.is("max_moment")) return number.value > little * said.weight * std::max(said.width[0], said.width[1]);
+  if (quantity.is("max_eccentricity") || quantity.is("residual_rotation")) return std::abs(number.value) > little;
+  if (quantity.is("residual_slip")) return std::abs(number.value) > 1e-3 * little;
+  if (quantity.is("min_sliding_safety")) return number.value < 1 / little;
   return true;
 }
 
@@ -48,10 +49,10 @@ void say_standing(const InterfaceVerdict& said, const std::string& of, Verdict& 
     if (!number || !counts(said, *number)) continue;
     std::string detail;
     const VerdictNumber* ratio = find_number(said.numbers, "toe_pressure_ratio");
-    if (number->quantity->name == "max_toe_pressure" && ratio)
+    if (number->quantity->is("max_toe_pressure") && ratio)
       detail = fmt::format("{:.3g} times the mean {}", ratio->value, format_quantity(said.mean_pressure, "Pa"));
-    if (number->quantity->name == "residual_settlement") detail = "mean of the base, from the unloaded structure";
-    if (number->quantity->name == "max_uplifted_ratio") detail = "counted by gap";
+    if (number->quantity->is("residual_settlement")) detail = "mean of the base, from the unloaded structure";
+    if (number->quantity->is("max_uplifted_ratio")) detail = "counted by gap";
     verdict.facts.push_back({each.label + of, uplift::format_value(*number->quantity, number->value), detail});
   }
 }

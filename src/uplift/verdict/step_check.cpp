@@ -23,7 +23,7 @@ struct Scale {
   double compression = 0;  // N
 };
 
-double value_or(const std::vector<VerdictNumber>& numbers, std::string_view name, double otherwise) {
+double value_or(const std::vector<VerdictNumber>& numbers, QuantityName name, double otherwise) {
   const VerdictNumber* number = find_number(numbers, name);
   return number ? std::abs(number->value) : otherwise;
 }
@@ -35,12 +35,11 @@ bool is_safety(const VerdictQuantity& quantity) {
 /// Durations and instants depend on gaps that vanish, and the compression of the joint on its stiffness, which is a choice of the
 /// computation; one axis of a storey may hold little of its vector. Their changes are stated but decide nothing.
 bool decides(const VerdictQuantity& quantity) {
-  return quantity.unit != "s" && quantity.name != "max_penetration" && !quantity.name.ends_with("_x") && !quantity.name.ends_with("_y");
+  return quantity.unit != "s" && !quantity.is("max_penetration") && !quantity.name.ends_with("_x") && !quantity.name.ends_with("_y");
 }
 
 bool is_force(const VerdictQuantity& quantity) {
-  constexpr std::string_view names[] = {"max_moment", "max_shear", "max_compression", "max_toe_pressure"};
-  return std::ranges::find(names, quantity.name) != std::end(names);
+  return quantity.is("max_moment") || quantity.is("max_shear") || quantity.is("max_compression") || quantity.is("max_toe_pressure");
 }
 
 double accepted_change(const VerdictQuantity& quantity) {
@@ -52,9 +51,9 @@ double reference(const VerdictNumber& number, double other, const Scale& scale) 
   const VerdictQuantity& quantity = *number.quantity;
   const double size = std::max({std::abs(number.value), std::abs(other), number.least, nothing_beside(quantity.unit)});
   if (quantity.name.starts_with("change_of")) return std::max(1 + std::max(number.value, other), least_share_of_change);
-  if (quantity.name == "residual_uplifted_ratio") return 1;  // gaps of micrometres count: beside the whole area
+  if (quantity.is("residual_uplifted_ratio")) return 1;  // gaps of micrometres count: beside the whole area
   if (is_share(quantity)) return std::max(size, least_share_of_change);
-  if (quantity.name == "min_compression") return std::max(size, scale.compression);
+  if (quantity.is("min_compression")) return std::max(size, scale.compression);
   if (quantity.name.starts_with("max_eccentricity")) return std::max(size, least_eccentricity);
   if (quantity.name.starts_with("residual"))
     return std::max({size, number.swing.value_or(0), least_motion * (quantity.unit == "rad" ? scale.rotation : scale.motion)});
@@ -98,7 +97,7 @@ void note_change(double change, double accepted, const VerdictQuantity* quantity
 void compare_numbers(std::vector<VerdictNumber>& numbers, const std::vector<VerdictNumber>& coarse, const std::string& of,
                      const Scale& scale, StepCheck& check) {
   for (VerdictNumber& number : numbers) {
-    const VerdictNumber* other = find_number(coarse, number.quantity->name);
+    const VerdictNumber* other = find_number(coarse, *number.quantity);
     if (!other || !std::isfinite(number.value) || !std::isfinite(other->value)) continue;
     number.coarse = other->value;
     if (!decides(*number.quantity) || is_noise_in_both(number)) continue;
@@ -149,7 +148,7 @@ std::string change_in_words(const VerdictNumber& number, double difference) {
 using Instant = StepRecord::Instant;
 using OfInstant = double (*)(const Instant&);
 struct ComparedForce {
-  std::string_view name;
+  QuantityName name;
   OfInstant of;
 };
 /// Without the shear, which friction redistributes with every slip.

@@ -230,7 +230,7 @@ bool is_negligible(const VerdictNumber& number) {
 }
 
 void say_structure(Verdict& verdict) {
-  const auto fact = [&](const char* name, const char* label, const std::string& detail, bool tile) {
+  const auto fact = [&](QuantityName name, const char* label, const std::string& detail, bool tile) {
     const VerdictNumber* number = find_number(verdict.numbers.whole, name);
     if (!number || is_negligible(*number)) return;
     const std::string change = number->change ? compared(*number) + ", " : "";
@@ -268,12 +268,11 @@ void say_compared(const BuiltCase& built, const RunResult& bonded, Verdict& verd
 void say_walls(Verdict& verdict) {
   for (const InterfaceVerdict& said : verdict.numbers.interfaces) {
     if (said.role != Role::wall) continue;
-    for (const auto& [name, label] : {std::pair{"max_opening", "Largest gap of "},
-                                      {"max_slip", "Largest slip of "},
-                                      {"max_toe_pressure", "Largest pressure of "},
-                                      {"share_of_horizontal_force", "Share of horizontal force, "},
-                                      {"share_of_base_moment", "Share of base moment, "}})
-      say(find_number(said.numbers, name), label + said.name, "", verdict);
+    say(find_number(said.numbers, "max_opening"), "Largest gap of " + said.name, "", verdict);
+    say(find_number(said.numbers, "max_slip"), "Largest slip of " + said.name, "", verdict);
+    say(find_number(said.numbers, "max_toe_pressure"), "Largest pressure of " + said.name, "", verdict);
+    say(find_number(said.numbers, "share_of_horizontal_force"), "Share of horizontal force, " + said.name, "", verdict);
+    say(find_number(said.numbers, "share_of_base_moment"), "Share of base moment, " + said.name, "", verdict);
   }
 }
 
@@ -296,17 +295,19 @@ void say_tension(Verdict& verdict) {
 }
 
 void say_residual(Verdict& verdict) {
-  for (const InterfaceVerdict& said : bases_of(verdict))
-    for (const auto& [name, label] : {std::pair{"residual_rotation", "Residual rotation"},
-                                      {"residual_settlement", "Residual settlement"},
-                                      {"residual_slip", "Residual slip"}}) {
-      const VerdictNumber* left = find_number(said.numbers, name);
-      if (!left) continue;
-      const std::string swing = swing_text(*left);
-      verdict.facts.push_back({label + of_interface(verdict, said), text_of(*left),
-                               swing.empty() ? "at rest" : fmt::format("mean of the last tenth of the run, remaining variation ±{}", swing),
-                               false, format_step_change(*left)});
-    }
+  const auto fact = [&verdict](const VerdictNumber* left, const std::string& label) {
+    if (!left) return;
+    const std::string swing = swing_text(*left);
+    verdict.facts.push_back({label, text_of(*left),
+                             swing.empty() ? "at rest" : fmt::format("mean of the last tenth of the run, remaining variation ±{}", swing),
+                             false, format_step_change(*left)});
+  };
+  for (const InterfaceVerdict& said : bases_of(verdict)) {
+    const std::string of = of_interface(verdict, said);
+    fact(find_number(said.numbers, "residual_rotation"), "Residual rotation" + of);
+    fact(find_number(said.numbers, "residual_settlement"), "Residual settlement" + of);
+    fact(find_number(said.numbers, "residual_slip"), "Residual slip" + of);
+  }
 }
 
 /// Why the case was not run with twice the step, where that is not the user's choice.

@@ -33,7 +33,7 @@ struct Ran : support::Ran {
       most = std::max(most, std::abs((*this)["ground." + force][i] - (*this)["ground.law_" + force][i]));
     return most;
   }
-  double verdict(const char* name) const {
+  double verdict(QuantityName name) const {
     const VerdictNumbers numbers = numbers_of(built, result, nullptr);
     const VerdictNumber* number = find_number(numbers.interfaces.front().numbers, name);
     return number ? number->value : NAN;

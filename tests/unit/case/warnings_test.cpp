@@ -123,7 +123,7 @@ TEST(ResultWarnings, LatePeaks) {
   VerdictNumbers numbers;
   InterfaceVerdict& base = numbers.interfaces.emplace_back();
   base.name = "soil";
-  base.numbers = {{find_verdict_quantity("max_moment"), 1e6, 8.9}, {find_verdict_quantity("max_opening"), 0.01, 8.0}};
+  base.numbers = {{QuantityName("max_moment"), 1e6, 8.9}, {QuantityName("max_opening"), 0.01, 8.0}};
   EXPECT_TRUE(result_warnings(run, numbers).empty());
   base.numbers.front().time = 9.5;
   ASSERT_EQ(result_warnings(run, numbers).size(), 1u);

@@ -136,7 +136,7 @@ TEST(RunEnds, StaticStagesAloneShowHowItStands) {
   EXPECT_NEAR(ran.result.final_energy.stored, 0.5 * weight * (settlement + e * rotation), 1e-9 * weight * settlement);
 
   const Verdict verdict = judge(ran.built, ran.result, nullptr);
-  const auto number = [&](const char* name) { return find_number(verdict.numbers.interfaces.at(0).numbers, name)->value; };
+  const auto number = [&](QuantityName name) { return find_number(verdict.numbers.interfaces.at(0).numbers, name)->value; };
   EXPECT_NEAR(number("max_eccentricity"), e / width, 1e-9);
   EXPECT_NEAR(number("residual_settlement"), settlement, 1e-9 * settlement);
   EXPECT_NEAR(number("residual_rotation"), -rotation, 1e-9 * rotation);  // clockwise, as its history

@@ -343,7 +343,7 @@ TEST(StudyRun, AFactorIsTheProcessScale) {
 }
 
 TEST(StudyRun, OutcomesCountForALimit) {
-  const StudyLimit limit{"opening", "", find_verdict_quantity("max_opening"), "soil", 0.01};
+  const StudyLimit limit{"opening", "", QuantityName("max_opening"), "soil", 0.01};
   using enum StudyOutcome;
   EXPECT_EQ(outcome_of(limit, opened(0.009)), RunOutcome::survived);
   EXPECT_EQ(outcome_of(limit, opened(0.011)), RunOutcome::exceeded);
@@ -353,7 +353,7 @@ TEST(StudyRun, OutcomesCountForALimit) {
     EXPECT_EQ(outcome_of(limit, opened(0.011, outcome)), RunOutcome::exceeded);  // before it ended
   }
   EXPECT_EQ(outcome_of(limit, opened(0.011, energy)), RunOutcome::unknown);
-  const StudyLimit other{"opening", "", find_verdict_quantity("max_opening"), "wall", 0.01};
+  const StudyLimit other{"opening", "", QuantityName("max_opening"), "wall", 0.01};
   EXPECT_EQ(outcome_of(other, opened(0.011)), RunOutcome::survived);
 }
 

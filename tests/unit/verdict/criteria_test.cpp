@@ -62,11 +62,11 @@ TEST(VerdictCriteria, WhatIsRefused) {
 }
 
 TEST(VerdictCriteria, EveryQuantityIsFoundByItsName) {
-  for (const VerdictQuantity& quantity : verdict_quantities()) {
+  for (const VerdictQuantity& quantity : verdict_quantities) {
     EXPECT_EQ(find_verdict_quantity(quantity.name), &quantity);
     EXPECT_NE(refusal_of("quantity = \"" + std::string(quantity.name) + "\"\nlimit = \"1 furlong2\"\nsource = \"a\"\n"), "");
     EXPECT_EQ(refusal_of("quantity = \"" + std::string(quantity.name) + "\"\nlimit = 1\nsource = \"a\"\n") == "",
-              !quantity.of_beam);  // beams need an envelope
+              !quantity.of_beam());  // beams need an envelope
   }
 }
 

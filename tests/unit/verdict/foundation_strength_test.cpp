@@ -74,7 +74,7 @@ struct Ran : support::Ran {
     const std::vector<double>* column = find_column(result, kind, 0);
     return column ? column->back() : NAN;
   }
-  double verdict(const char* name) const {
+  double verdict(QuantityName name) const {
     const VerdictNumbers numbers = numbers_of(built, result, nullptr);
     const VerdictNumber* number = find_number(numbers.interfaces.front().numbers, name);
     return number ? number->value : NAN;

@@ -18,9 +18,9 @@ const InterfaceVerdict& interface_of(const VerdictNumbers& numbers, const std::s
   return numbers.interfaces.front();
 }
 
-double value(const std::vector<VerdictNumber>& numbers, const char* name) {
+double value(const std::vector<VerdictNumber>& numbers, QuantityName name) {
   const VerdictNumber* found = find_number(numbers, name);
-  EXPECT_NE(found, nullptr) << name;
+  EXPECT_NE(found, nullptr) << (*name).name;
   return found ? found->value : NAN;
 }
 

@@ -9,8 +9,8 @@
 namespace uplift::step_check_test {
 namespace {
 
-VerdictNumber number(std::string_view name, double value) {
-  return {find_verdict_quantity(name), value};
+VerdictNumber number(QuantityName name, double value) {
+  return {name, value};
 }
 
 /// One base of 4 m width.
@@ -32,7 +32,7 @@ StepCheck compared(VerdictNumbers& numbers, const VerdictNumbers& coarse) {
 }
 
 /// The change of one number of the base.
-double change_of_one(std::string_view name, double value, double coarse) {
+double change_of_one(QuantityName name, double value, double coarse) {
   VerdictNumbers numbers = numbers_with({number(name, value)});
   const StepCheck check = compared(numbers, numbers_with({number(name, coarse)}));
   EXPECT_EQ(numbers.interfaces.front().numbers.front().coarse, coarse);

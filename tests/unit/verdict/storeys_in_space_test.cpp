@@ -51,7 +51,7 @@ std::string drifts() {
   return text;
 }
 
-double number(const std::vector<VerdictNumber>& numbers, const char* name) {
+double number(const std::vector<VerdictNumber>& numbers, QuantityName name) {
   const VerdictNumber* found = find_number(numbers, name);
   return found == nullptr ? std::nan("") : found->value;
 }

@@ -39,9 +39,9 @@ inline InterfaceView view_of(const Resultant& resultant, double open_area = 0) {
   return view;
 }
 
-inline double number(const VerdictNumbers& numbers, const char* name) {
+inline double number(const VerdictNumbers& numbers, QuantityName name) {
   const VerdictNumber* found = find_number(numbers.interfaces.at(0).numbers, name);
-  EXPECT_NE(found, nullptr) << name;
+  EXPECT_NE(found, nullptr) << (*name).name;
   return found ? found->value : NAN;
 }
 

@@ -151,13 +151,13 @@ TEST(VerdictTest, NumbersNoFinerThanTheyStillMove) {
 }
 
 TEST(VerdictTest, NothingIsSaidAsZeroAndSharesInPercent) {
-  const auto words = [](const char* name, double value) { return format_value(*find_verdict_quantity(name), value); };
+  const auto words = [](QuantityName name, double value) { return format_value(*name, value); };
   EXPECT_EQ(words("residual_rotation", 6.9e-20), "0 rad");
   EXPECT_EQ(words("max_uplifted_ratio", 0.236), "24 %");
   EXPECT_EQ(words("change_of_compression", 1.07e-4), "0.01 %");
   EXPECT_EQ(words("change_of_compression", -3e-6), "0 %");
   EXPECT_EQ(words("change_of_compression", 11.2), "1.12e+03 %");
-  for (const VerdictQuantity& quantity : verdict_quantities()) {
+  for (const VerdictQuantity& quantity : verdict_quantities) {
     EXPECT_FALSE(quantity.brief.empty()) << quantity.name;
     EXPECT_LE(quantity.brief.size(), 28u) << quantity.name;  // tables of a terminal
   }

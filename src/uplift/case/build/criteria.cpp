@@ -14,10 +14,10 @@ void check_role(const CaseCriterion& table, const Criterion& criterion, const Bu
   const auto index = static_cast<std::size_t>(criterion.interface);
   const bool wall = index >= built.bases();
   const VerdictQuantity& asked = *criterion.quantity;
-  if (wall ? asked.of_wall : asked.of_base) return;
+  if (wall ? asked.of_wall() : asked.of_base()) return;
   std::vector<std::string_view> names;
-  for (const VerdictQuantity& each : verdict_quantities())
-    if (each.of_interface && (wall ? each.of_wall : each.of_base)) names.push_back(each.name);
+  for (const VerdictQuantity& each : verdict_quantities)
+    if (each.of_interface() && (wall ? each.of_wall() : each.of_base())) names.push_back(each.name);
   fail(table, "quantity",
        fmt::format("a number of a {} (\"{}\" is one): {}", wall ? "wall" : "base", built.facts[index].name, fmt::join(names, ", ")),
        in_quotes(asked.name));
@@ -25,7 +25,7 @@ void check_role(const CaseCriterion& table, const Criterion& criterion, const Bu
 
 /// The quantities of beams need an envelope.
 std::string beam_of(const CaseCriterion& table, const RunPlan& plan) {
-  if (!table.quantity->of_beam) return {};
+  if (!table.quantity->of_beam()) return {};
   if (plan.envelopes.empty()) fail(table, "quantity", "a [[output.beam_envelope]], for the section forces of beams", "none");
   if (!table.beam) return {};
   Names beams("beam with an envelope");

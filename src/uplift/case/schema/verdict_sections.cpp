@@ -33,8 +33,8 @@ CaseCriterion case_criterion(const Values& table) {
   CaseCriterion made{
       {&table}, &quantity, limit_asked(table, quantity), table.text("source"), name_if(table, "interface"), name_if(table, "beam")};
   if (made.source.find_first_not_of(" \t\n") == std::string::npos) fail(table, "source", "where the limit comes from", "an empty text");
-  if (made.beam && !quantity.of_beam) fail(*made.beam, fmt::format("no beam: \"{}\" is no quantity of beams", quantity.name), "one");
-  if (made.interface && !quantity.of_interface)
+  if (made.beam && !quantity.of_beam()) fail(*made.beam, fmt::format("no beam: \"{}\" is no quantity of beams", quantity.name), "one");
+  if (made.interface && !quantity.of_interface())
     fail(*made.interface, fmt::format("no interface: \"{}\" belongs to the whole run", quantity.name), "one");
   return made;
 }
@@ -45,7 +45,7 @@ const VerdictQuantity& quantity_asked(const Values& table) {
   const std::string& name = table.text("quantity");
   if (const VerdictQuantity* found = find_verdict_quantity(name)) return *found;
   std::vector<std::string> known;
-  for (const VerdictQuantity& each : verdict_quantities()) known.emplace_back(each.name);
+  for (const VerdictQuantity& each : verdict_quantities) known.emplace_back(each.name);
   fail(table, "quantity", fmt::format("a number of the verdict: {}", fmt::join(known, ", ")), "\"" + name + "\"",
        nearest_name(name, known));
 }

@@ -14,7 +14,7 @@ constexpr std::string_view placeholder = "/*UPLIFT_DATA*/";
 /// The catalog of the numbers of the verdict: how they are formatted depends on what they are.
 void write_quantities(JsonWriter& json) {
   json.begin_object();
-  for (const VerdictQuantity& each : verdict_quantities()) {
+  for (const VerdictQuantity& each : verdict_quantities) {
     json.key(each.name).begin_object().member("meaning", each.meaning);
     if (is_share(each)) json.member("share", true);
     if (near_zero(each)) json.member("near_zero", true);

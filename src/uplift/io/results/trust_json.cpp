@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <initializer_list>
+
 #include "uplift/io/results/words.h"
 
 namespace uplift {
@@ -97,9 +99,9 @@ std::string trust_sentence(const TrustAnswer& answer) {
   if (counted == 0) return fmt::format("No bands: none of the {} runs with a changed choice was completed.", all);
   const std::string over = counted == all ? "all changed choices" : fmt::format("{} of {} changed choices", counted, all);
   std::string text;
-  for (const char* name : {"max_uplifted_ratio", "max_opening", "max_moment"})
+  for (const QuantityName name : std::initializer_list<QuantityName>{"max_uplifted_ratio", "max_opening", "max_moment"})
     for (const TrustBand& band : answer.bands) {
-      if (band.quantity->name != name) continue;
+      if (!band.quantity->is(name)) continue;
       text += fmt::format("{}{} from {} to {}", text.empty() ? "Over " + over + ": " : ", ", band.quantity->brief,
                           band.format_value(band.least), band.format_value(band.most));
       break;  // of the first interface

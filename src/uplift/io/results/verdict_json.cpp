@@ -41,7 +41,7 @@ void write_numbers(ResultWriter& out, const std::vector<VerdictNumber>& numbers,
       out.when(true).object_of("number", quantity.name, quantity.unit, quantity.meaning, [&] { write_number(out, number); });
     };
     for (const VerdictNumber& number : numbers) write(number);
-    for (const VerdictQuantity& quantity : verdict_quantities())
+    for (const VerdictQuantity& quantity : verdict_quantities)
       if (out.is_schema() && whose(quantity)) write({.quantity = &quantity});
   });
 }
@@ -94,7 +94,7 @@ void write_interface(ResultWriter& out, const InterfaceVerdict& said, const Buil
   out.text("name", said.name, "name of the interface");
   out.word("role", to_string(said.role), {"base", "wall"}, "base, or wall of an embedded base");
   write_base(out, said);
-  write_numbers(out, said.numbers, [](const VerdictQuantity& quantity) { return quantity.of_interface; });
+  write_numbers(out, said.numbers, [](const VerdictQuantity& quantity) { return quantity.of_interface(); });
   out.when(base).list("above", "how long the uplifted share exceeds the thresholds of the case", said.above,
                       [&](const InterfaceVerdict::Above& above) {
                         out.number("uplifted_ratio", above.threshold, "1", "threshold");
@@ -111,8 +111,8 @@ void write_criterion(ResultWriter& out, const CriterionResult& result) {
   const VerdictQuantity& quantity = result.criterion.quantity ? *result.criterion.quantity : none;
   using enum CriterionResult::State;
   out.text("quantity", quantity.name, "quantity of the verdict");
-  out.when(!quantity.of_beam).text("interface", result.interface, "interface that it is evaluated for; empty: the run as a whole");
-  out.when(quantity.of_beam).text("beam", result.interface, "beam that it is evaluated for");
+  out.when(!quantity.of_beam()).text("interface", result.interface, "interface that it is evaluated for; empty: the run as a whole");
+  out.when(quantity.of_beam()).text("beam", result.interface, "beam that it is evaluated for");
   out.word("result", to_string(result.state), {to_string(met), to_string(not_met), to_string(undetermined)}, "result");
   constexpr std::string_view unit = "as stated in unit";
   out.number_or_null("value", result.value, unit, "value of the run; null: not computed");
@@ -199,7 +199,7 @@ void write_verdict_numbers(ResultWriter& out, const Verdict& verdict, const std:
     out.text("run", runs.empty() ? "" : runs.front().name, "name of the run that the verdict describes");
     out.flag("per_metre", built && built->is_strip(), "whether forces are per metre of depth");
     write_intervals(out, "full_loss_of_contact", numbers.full_loss, "intervals during which no base has any contact");
-    write_numbers(out, numbers.whole, [](const VerdictQuantity& quantity) { return !quantity.of_interface && !quantity.of_beam; });
+    write_numbers(out, numbers.whole, [](const VerdictQuantity& quantity) { return !quantity.of_interface() && !quantity.of_beam(); });
     struct Entry {
       const InterfaceVerdict* verdict = nullptr;
       std::size_t k = 0;
@@ -212,7 +212,7 @@ void write_verdict_numbers(ResultWriter& out, const Verdict& verdict, const std:
     });
     out.when(!numbers.beams.empty()).list("beams", "beams with an envelope", numbers.beams, [&](const BeamVerdict& beam) {
       out.text("name", beam.name, "name of the beam");
-      write_numbers(out, beam.numbers, [](const VerdictQuantity& quantity) { return quantity.of_beam; });
+      write_numbers(out, beam.numbers, [](const VerdictQuantity& quantity) { return quantity.of_beam(); });
     });
     out.when(!numbers.storeys.empty())
         .list("storeys", "in space, storeys of which both axes are recorded", numbers.storeys, [&](const StoreyVerdict& storey) {

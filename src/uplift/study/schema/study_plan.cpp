@@ -39,7 +39,7 @@ StudyLimit limit_of(const Values& table) {
   if (limit.limit < 0 && !limit.quantity->at_least && !name.starts_with("change_of"))
     fail(table, "limit", "a number >= 0: the size of the quantity counts", table.text("limit"));
   if (table.has("of")) {
-    if (!limit.quantity->of_interface && !limit.quantity->of_beam)
+    if (!limit.quantity->of_interface() && !limit.quantity->of_beam())
       fail(table, "of", fmt::format("nothing: {} belongs to the whole run", name), "\"" + table.text("of") + "\"");
     limit.of = table.text("of");
   }
