@@ -15,7 +15,7 @@ void print_points(const InterfaceProblem& problem, const InterfaceSolution& solu
   std::vector<std::vector<std::string>> rows{{"interface", "point", "opening [m]", "pressure [Pa]"}};
   for (const Block& block : problem.model->blocks)
     for (int i = 0; i < block.batch.points; ++i) {
-      const int row = block.first + block.batch.normal() + i;
+      const int row = block.normal_row() + i;
       rows.push_back({block.name, fmt::format("{}", i + 1), fmt::format("{:.6e}", solution.opening[row]),
                       fmt::format("{:.6e}", -solution.force[row] / (problem.model->scale * block.area[static_cast<std::size_t>(i)]))});
     }

@@ -7,7 +7,7 @@ namespace uplift {
 double flexibility(const ContactModel& model, const Block& block) {
   double largest = 0;
   for (int i = 0; i < block.batch.points; ++i) {
-    const double compliance = model.factor.row(block.first + block.batch.normal() + i).squaredNorm();
+    const double compliance = model.factor.row(block.normal_row() + i).squaredNorm();
     largest = std::max(largest, compliance * block.area[static_cast<std::size_t>(i)]);
   }
   return largest;

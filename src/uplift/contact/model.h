@@ -30,6 +30,7 @@ struct Block {
   double substitute_stiffness = 0;        // Pa/m
   std::vector<double> substitute_memory;  // at the beginning of the step
   int rows() const { return batch.points * batch.components; }
+  int normal_row() const { return first + batch.normal(); }  // of the first point
   int slopes() const { return rows() * batch.components; }
 };
 

@@ -60,7 +60,7 @@ double cone_error(const InterfaceProblem& problem, const Block& block, const Int
   const double friction = block.cone->friction();
   double worst = 0;
   for (int i = 0; i < n; ++i) {
-    const int row = block.first + block.batch.normal() + i;
+    const int row = block.normal_row() + i;
     const double q = solution.force[row] / force_scale, s = solution.opening[row] / length_scale;
     worst = std::max(worst, std::abs(q - std::min(0.0, q + s)));
     const double radius = friction * std::max(0.0, -q);

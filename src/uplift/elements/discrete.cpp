@@ -26,9 +26,6 @@ Matrix connect(const Connection& connection, double value) {
   return value * row * row.transpose();
 }
 
-void form_one(Matrix* wanted, const Matrix& matrix) {
-  if (wanted) *wanted = matrix;
-}
 void form_none(Matrix* wanted, Index size) {
   if (wanted) wanted->setZero(size, size);
 }
@@ -67,22 +64,12 @@ void PointDashpot::form(Local local) const {
   if (local.damping) *local.damping = at_point(space_, along_, about_, offset_);
 }
 
-Spring::Spring(Connection connection, double stiffness)
-    : space_(connection.space), nodes_(connection.nodes), stiffness_(connect(connection, stiffness)) {}
+Connector::Connector(const Connection& connection, double value, Matrix* Local::*part)
+    : space_(connection.space), nodes_(connection.nodes), matrix_(connect(connection, value)), part_(part) {}
 
-void Spring::form(Local local) const {
-  form_one(local.stiffness, stiffness_);
-  form_none(local.mass, stiffness_.rows());
-  form_none(local.damping, stiffness_.rows());
-}
-
-Dashpot::Dashpot(Connection connection, double damping)
-    : space_(connection.space), nodes_(connection.nodes), damping_(connect(connection, damping)) {}
-
-void Dashpot::form(Local local) const {
-  form_none(local.stiffness, damping_.rows());
-  form_none(local.mass, damping_.rows());
-  form_one(local.damping, damping_);
+void Connector::form(Local local) const {
+  for (Matrix* Local::*part : {&Local::stiffness, &Local::mass, &Local::damping}) form_none(local.*part, matrix_.rows());
+  if (Matrix* wanted = local.*part_) *wanted = matrix_;
 }
 
 namespace {

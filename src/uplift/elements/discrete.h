@@ -51,10 +51,11 @@ struct Connection {
   bool rotational = false;  // of the direction: rotations about it (space only)
 };
 
-/// Linear spring, stiffness in N/m or N m/rad.
-class Spring : public Element {
+/// A spring or a dashpot.
+class Connector : public Element {
  public:
-  Spring(Connection connection, double stiffness);
+  /// `part`: the matrix that it adds to.
+  Connector(const Connection& connection, double value, Matrix* Local::*part);
   std::span<const int> nodes() const override { return nodes_; }
   int unknowns_per_node() const override { return space_.unknowns(); }
   void form(Local local) const override;
@@ -62,21 +63,18 @@ class Spring : public Element {
  private:
   Space space_;
   std::vector<int> nodes_;
-  Matrix stiffness_;
+  Matrix matrix_;
+  Matrix* Local::*part_;
+};
+
+/// Linear spring, stiffness in N/m or N m/rad.
+struct Spring final : Connector {
+  Spring(const Connection& connection, double stiffness) : Connector(connection, stiffness, &Local::stiffness) {}
 };
 
 /// Linear dashpot, damping in N s/m or N m s/rad.
-class Dashpot : public Element {
- public:
-  Dashpot(Connection connection, double damping);
-  std::span<const int> nodes() const override { return nodes_; }
-  int unknowns_per_node() const override { return space_.unknowns(); }
-  void form(Local local) const override;
-
- private:
-  Space space_;
-  std::vector<int> nodes_;
-  Matrix damping_;
+struct Dashpot final : Connector {
+  Dashpot(const Connection& connection, double damping) : Connector(connection, damping, &Local::damping) {}
 };
 
 }  // namespace uplift

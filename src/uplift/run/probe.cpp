@@ -62,7 +62,7 @@ std::vector<StiffnessRatio> stiffness_ratios(const Model& model, const Stage& st
     double stiffness[most_components] = {};
     if (block.law != nullptr) block.law->closed_stiffness(block.batch.components, stiffness);
     for (int i = 0; i < block.batch.points; ++i) {
-      const double compliance = contact.factor.row(block.first + block.batch.normal() + i).squaredNorm();
+      const double compliance = contact.factor.row(block.normal_row() + i).squaredNorm();
       const double value = stiffness[block.batch.translations() - 1] * block.area[static_cast<std::size_t>(i)] * compliance;
       ratio.least = std::min(ratio.least, value);
       ratio.most = std::max(ratio.most, value);

@@ -79,12 +79,6 @@ Model column_model(const std::vector<ColumnLayer>& layers, const ColumnWave& wav
   return builder.finish();
 }
 
-/// Nothing opens in the column.
-struct NoImpact final : ImpactRule {
-  bool acts() const override { return false; }
-  void apply(const Impact&, Vector&, Vector&, ImpactScratch&) const override {}
-};
-
 }  // namespace
 
 FreeField::FreeField(std::vector<ColumnLayer> layers, ColumnWave wave, BulkDamping damping, const std::vector<Stage>& stages,

@@ -26,7 +26,7 @@ bool CoulombRates::solve(const Vector& free, const Vector& takes_part, double at
   problem_.free_opening = free;
   const double open = far * free.cwiseAbs().maxCoeff();
   for (const Block& block : problem_.model->blocks) {
-    const int normal = block.first + block.batch.normal();
+    const int normal = block.normal_row();
     for (int row = normal; row < normal + block.batch.points; ++row)
       if (!(takes_part[row] > 0)) problem_.free_opening[row] += open;
   }
@@ -37,7 +37,7 @@ bool CoulombRates::solve(const Vector& free, const Vector& takes_part, double at
   if (!(open > 0)) return true;
   std::size_t point = 0;  // the first guess: what approaches sticks
   for (const Block& block : problem_.model->blocks) {
-    const int normal = block.first + block.batch.normal();
+    const int normal = block.normal_row();
     for (int row = normal; row < normal + block.batch.points; ++row, ++point)
       solution_.status[point] = problem_.free_opening[row] < -at_rest ? Status::stick : Status::open;
   }

@@ -59,6 +59,13 @@ class ImpactRule {
   virtual void hold(const Impact&, Vector& /*acceleration*/, ImpactScratch&) const {}
 };
 
+/// The integrator's velocity is kept: the rule "none", and of models without an interface.
+class NoImpact final : public ImpactRule {
+ public:
+  bool acts() const override { return false; }
+  void apply(const Impact&, Vector&, Vector&, ImpactScratch&) const override {}
+};
+
 std::span<const Entry<ImpactRule>* const> impact_catalog();  // none, project, project_hold, reflect, propagate
 std::span<const PartInfo* const> impact_rules();
 

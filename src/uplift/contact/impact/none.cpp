@@ -1,23 +1,13 @@
 #include "uplift/contact/impact/impact.h"
 
 namespace uplift {
-namespace {
-
-class None final : public ImpactRule {
- public:
-  bool acts() const override { return false; }
-  void apply(const Impact&, Vector&, Vector&, ImpactScratch&) const override {}
-};
-
-}  // namespace
-
 const Entry<ImpactRule>& entry_impact_none() {
   static const Entry<ImpactRule> entry{{.name = "none",
                                         .summary = "the integrator's velocity is kept: shows the energy that constraint contact creates",
                                         .equations = "v' = v",
                                         .source = "Cherubini, Richard & Frau, section 2",
                                         .params = {}},
-                                       [](const Values&) { return std::make_unique<const None>(); }};
+                                       [](const Values&) { return std::make_unique<const NoImpact>(); }};
   return entry;
 }
 

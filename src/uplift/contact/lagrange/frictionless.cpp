@@ -42,7 +42,7 @@ class Frictionless final : public MethodWork {
     for (const Block& block : problem_->model->blocks)
       for (int i = 0; i < block.batch.points; ++i, ++point) {
         if (block.cone == nullptr) continue;
-        const int row = block.first + block.batch.normal() + i;
+        const int row = block.normal_row() + i;
         limit_[row] = block.area[static_cast<std::size_t>(i)];
         if (solution_->status[point] != Status::open) held_[row] = limit_[row];
       }
@@ -159,7 +159,7 @@ class Frictionless final : public MethodWork {
     for (const Block& block : problem_->model->blocks) {
       if (block.cone != nullptr) solution_->force.segment(block.first, block.rows()) = multiplier_.segment(block.first, block.rows());
       for (int i = 0; i < block.batch.points; ++i, ++point)
-        solution_->status[point] = block.cone != nullptr && held_[block.first + block.batch.normal() + i] > 0 ? Status::slip : Status::open;
+        solution_->status[point] = block.cone != nullptr && held_[block.normal_row() + i] > 0 ? Status::slip : Status::open;
     }
     outcome_.converged = true;
     outcome_.residual = contact_residual(*problem_, *solution_, residual_);

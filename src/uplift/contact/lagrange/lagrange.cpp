@@ -60,7 +60,7 @@ class LagrangeMethod final : public ContactMethod {
   /// One frictionless block: the normal rows alone are the problem.
   Outcome solve_one(const InterfaceProblem& problem, LagrangeWork& work, InterfaceSolution& solution) const {
     const Block& block = problem.model->blocks.front();
-    const std::ptrdiff_t n = block.batch.points, first = block.first + block.batch.normal(), rows = problem.rows();
+    const std::ptrdiff_t n = block.batch.points, first = block.normal_row(), rows = problem.rows();
     const double* area = block.area.data();
     double* held = work.held.data();
     Status* status = solution.status.data();
@@ -88,7 +88,7 @@ class LagrangeMethod final : public ContactMethod {
     work.limit.setZero();
     int point = 0;
     for (const Block& block : problem.model->blocks) {
-      const int normal = block.first + block.batch.normal();
+      const int normal = block.normal_row();
       for (int i = 0; i < block.batch.points; ++i, ++point) {
         work.limit[normal + i] = block.area[static_cast<std::size_t>(i)];
         work.held[normal + i] = solution.status[static_cast<std::size_t>(point)] != Status::open ? work.limit[normal + i] : 0;
@@ -108,8 +108,7 @@ class LagrangeMethod final : public ContactMethod {
     point = 0;
     for (const Block& block : problem.model->blocks)
       for (int i = 0; i < block.batch.points; ++i, ++point)
-        solution.status[static_cast<std::size_t>(point)] =
-            work.held[block.first + block.batch.normal() + i] > 0 ? Status::slip : Status::open;
+        solution.status[static_cast<std::size_t>(point)] = work.held[block.normal_row() + i] > 0 ? Status::slip : Status::open;
     return outcome(problem, reply, 0);
   }
 
