@@ -6,11 +6,13 @@
 #if defined(__GLIBC__)
 #include <malloc.h>
 #endif
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <limits>
 
@@ -105,6 +107,16 @@ void prepare_heap() {
 void give_back_free_memory() {
 #if defined(__GLIBC__)
   malloc_trim(0);
+#endif
+}
+
+void provide_pages(const void* begin, std::size_t bytes) {
+#if defined(MADV_POPULATE_WRITE)
+  constexpr std::size_t page = 4096, most = 2 << 20;  // a long run may end early
+  if (bytes < page) return;
+  const auto first = reinterpret_cast<std::uintptr_t>(begin), from = first / page * page;
+  madvise(reinterpret_cast<void*>(from), first + std::min(bytes, most) - from,
+          MADV_POPULATE_WRITE);  // a wish: an older system has no answer
 #endif
 }
 

@@ -34,7 +34,10 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
     result_.columns = plan.requests;
     result_.table.assign(plan.requests.size() + 1, {});
   }
-  for (std::vector<double>& column : result_.table) column.reserve(column.size() + expected_rows + 2);
+  for (std::vector<double>& column : result_.table) {
+    column.reserve(column.size() + expected_rows + 2);
+    provide_pages(column);
+  }
   recent_.resize(plan.requests.size() * apart);
   const auto moves_base = [](const Request& request) {
     return request.kind == Request::Kind::settlement || request.kind == Request::Kind::tilt_1 || request.kind == Request::Kind::tilt_2;

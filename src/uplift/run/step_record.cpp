@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "uplift/linear/memory.h"
+
 namespace uplift {
 namespace {
 
@@ -35,6 +37,8 @@ void StepRecord::reserve(std::size_t interfaces, std::size_t count, std::size_t 
   }
   time.reserve(time.size() + count);
   instants.reserve(instants.size() + count * interfaces);
+  provide_pages(time);
+  provide_pages(instants);
 }
 
 void StepRecord::add(double now, const std::vector<InterfaceView>& views, double gap_tolerance) {
