@@ -6,7 +6,6 @@
 
 #include "uplift/dynamics/closed_joint.h"
 #include "uplift/dynamics/monolithic.h"
-#include "uplift/dynamics/statics.h"
 #include "uplift/model/mechanism.h"
 
 namespace uplift {
