@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "uplift/math/lanes.h"
+#include "uplift/run/quantities.h"
 
 namespace uplift {
 namespace {
@@ -39,11 +40,6 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
     provide_pages(column);
   }
   recent_.resize(plan.requests.size() * apart);
-  const auto moves_base = [](const Request& request) {
-    return request.kind == Request::Kind::settlement || request.kind == Request::Kind::tilt_1 || request.kind == Request::Kind::tilt_2;
-  };
-  if (std::ranges::any_of(plan.requests, moves_base))
-    for (std::size_t k = 0; k < plan.bases.size(); ++k) bases_.emplace_back(model, model.interfaces[k], plan.bases[k]);
   for (const Request& request : plan.requests) {
     Source source = source_of(request);
     source.request = &request;
@@ -52,6 +48,8 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
     most_.push_back(std::abs(result_.peaks[most_.size()].value));
     (source.place != nullptr ? placed_ : source.vector != nullptr ? entries_ : made_).push_back(std::move(source));
   }
+  if (std::ranges::any_of(made_, [](const Source& each) { return each.in_pose != nullptr; }))
+    for (std::size_t k = 0; k < plan.bases.size(); ++k) bases_.emplace_back(model, model.interfaces[k], plan.bases[k]);
   for (const CombinedRequest& request : plan.combined) {
     std::vector<std::vector<Term>>& components = combined_.emplace_back();
     bool recorded = true;
@@ -72,7 +70,6 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
 
 Recorder::Source Recorder::source_of(const Request& request) const {
   using What = Request::Kind;
-  const InterfaceView* view = views_.data() + request.interface;
   const auto entry_of = [&](const Vector State::*vector) {  // of one free unknown, or made from several
     Source source{.vector = vector};
     for (Sparse::InnerIterator entry(model_.expansion, request.unknown); entry; ++entry)
@@ -112,88 +109,15 @@ Recorder::Source Recorder::source_of(const Request& request) const {
       return row_of(&State::mean_force, true);
     case What::end_traction:
       return row_of(&State::force, true);
-    case What::rotation:
-      return {.place = model_.space.dimension == 2 ? &view->rotation[0] : nullptr};
-    case What::rotation_1:
-      return {.place = &view->rotation[0]};
-    case What::rotation_2:
-      return {.place = &view->rotation[1]};
-    case What::axial:
-      return {.place = &view->resultant.axial};
-    case What::shear:
-      return {.place = &view->resultant.shear};
-    case What::moment:
-      return {.place = &view->resultant.moment};
-    case What::shear_1:
-      return {.place = &view->resultant.shear_1};
-    case What::shear_2:
-      return {.place = &view->resultant.shear_2};
-    case What::moment_1:
-      return {.place = &view->resultant.moment_1};
-    case What::moment_2:
-      return {.place = &view->resultant.moment_2};
-    case What::torsion:
-      return {.place = &view->resultant.torsion};
-    case What::uplifted_ratio:
-      return {.place = &view->open_area};
-    case What::max_opening:
-      return {.place = &view->max_opening};
-    case What::max_pressure:
-      return {.place = &view->max_pressure};
-    case What::bearing_utilisation:
-      return {.place = &view->bearing_utilisation};
-    case What::sliding_utilisation:
-      return {.place = &view->sliding_utilisation};
-    case What::bearing_capacity:
-      return {.place = &view->bearing_capacity};
-    case What::law_axial:
-      return {.place = &view->in_law.axial};
-    case What::law_shear:
-      return {.place = &view->in_law.shear};
-    case What::law_moment:
-      return {.place = &view->in_law.moment};
-    case What::law_shear_1:
-      return {.place = &view->in_law.shear_1};
-    case What::law_shear_2:
-      return {.place = &view->in_law.shear_2};
-    case What::law_moment_1:
-      return {.place = &view->in_law.moment_1};
-    case What::law_moment_2:
-      return {.place = &view->in_law.moment_2};
-    case What::law_torsion:
-      return {.place = &view->in_law.torsion};
-    case What::kinetic:
-      return {.place = &energies_.kinetic};
-    case What::strain:
-      return {.place = &energies_.strain};
-    case What::stored:
-      return {.place = &energies_.stored};
-    case What::interface_dissipated:
-      return {.place = &energies_.interface_dissipated};
-    case What::damping:
-      return {.place = &energies_.damping};
-    case What::impact:
-      return {.place = &energies_.impact};
-    case What::external:
-      return {.place = &energies_.external};
-    case What::residual:
-      return {.place = &energies_.residual};
-    case What::plastic:
-      return {.place = &energies_.plastic};
-    case What::algorithmic:
-      return {.place = &energies_.algorithmic};
-    case What::filter:
-      return {.place = &energies_.filter};
-    case What::stop:
-      return {.place = &energies_.stop};
-    case What::settlement:
-    case What::tilt_1:
-    case What::tilt_2:
-      return {};
     case What::force:
       return {.place = forces_->value(request)};
+    default:
+      break;
   }
-  return {};
+  if (const EnergyQuantity* energy = find_energy_quantity(request.kind)) return {.place = &(energies_.*energy->of)};
+  const InterfaceQuantity* quantity = find_interface_quantity(request.kind, model_.space.dimension);
+  if (quantity == nullptr || quantity->in_view == nullptr) return {.in_pose = quantity != nullptr ? quantity->in_pose : nullptr};
+  return {.place = quantity->in_view(views_[static_cast<std::size_t>(request.interface)])};
 }
 
 /// Acceleration of the relative frame along the axis of the request [m/s2].
@@ -231,15 +155,12 @@ double Recorder::made(const Source& source) const {
       const std::array<double, 2>& slope = views_[static_cast<std::size_t>(request.interface)].rotation;
       return std::hypot(slope[0], slope[1]);
     }
-    case What::settlement:
-    case What::tilt_1:
-    case What::tilt_2: {
+    default: {
+      if (source.in_pose == nullptr) return 0;
       BasePose pose;
       bases_[static_cast<std::size_t>(request.interface)].look(state, pose);
-      return request.kind == What::settlement ? pose.settlement : request.kind == What::tilt_1 ? pose.tilt_1 : pose.tilt_2;
+      return pose.*source.in_pose;
     }
-    default:
-      return 0;
   }
 }
 

@@ -60,36 +60,6 @@ int find_request(const std::vector<Request>& columns, std::string_view name) {
   return found == columns.end() ? -1 : static_cast<int>(found - columns.begin());
 }
 
-bool is_step_mean(Request::Kind kind) {
-  using enum Request::Kind;
-  switch (kind) {
-    case acceleration:
-    case absolute_acceleration:
-    case traction:
-    case axial:
-    case shear:
-    case moment:
-    case shear_1:
-    case shear_2:
-    case moment_1:
-    case moment_2:
-    case torsion:
-    case law_axial:
-    case law_shear:
-    case law_moment:
-    case law_shear_1:
-    case law_shear_2:
-    case law_moment_1:
-    case law_moment_2:
-    case law_torsion:
-    case max_pressure:
-    case force:
-      return true;
-    default:
-      return false;
-  }
-}
-
 std::string RunResult::created_percent() const {
   return energy_scale > 0 ? fmt::format("{:.3g} %", 100 * energy_created / energy_scale) : "0 %";
 }

@@ -113,9 +113,6 @@ int find_request(const std::vector<Request>& columns, Request::Kind kind, int un
 /// The column of this name; -1: there is none.
 int find_request(const std::vector<Request>& columns, std::string_view name);
 
-/// Whether a column of this kind is the mean over the step before its instant where RunResult::step_means; else it belongs to the instant.
-bool is_step_mean(Request::Kind kind);
-
 /// A floor whose response spectra are wanted, from its absolute acceleration.
 struct FloorRequest {
   std::string name;

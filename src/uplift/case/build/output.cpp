@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "uplift/base/text.h"
 #include "uplift/case/build/forces.h"
@@ -11,6 +10,7 @@
 #include "uplift/dynamics/plastic_bulk.h"
 #include "uplift/interface/shear.h"
 #include "uplift/laws/stated.h"
+#include "uplift/run/quantities.h"
 
 namespace uplift {
 namespace {
@@ -41,55 +41,29 @@ std::vector<NodeQuantity> node_quantities(Space space) {
   return made;
 }
 
-struct InterfaceQuantity {
-  std::string_view word;
-  Column kind;
-  std::string_view unit;
-};
-/// Of a foundation with radiation dashpots, whose other forces contain those of the dashpots.
-std::vector<InterfaceQuantity> forces_in_law(Space space) {
-  std::vector<InterfaceQuantity> made{
-      {"law_axial", Column::law_axial, "N"}, {"law_shear", Column::law_shear, "N"}, {"law_moment", Column::law_moment, "N m"}};
-  if (space.dimension == 3)
-    for (const InterfaceQuantity& each :
-         {InterfaceQuantity{"law_shear_1", Column::law_shear_1, "N"}, InterfaceQuantity{"law_shear_2", Column::law_shear_2, "N"},
-          InterfaceQuantity{"law_moment_1", Column::law_moment_1, "N m"}, InterfaceQuantity{"law_moment_2", Column::law_moment_2, "N m"},
-          InterfaceQuantity{"law_torsion", Column::law_torsion, "N m"}})
-      made.push_back(each);
-  return made;
-}
-
-/// In space `shear`, `moment` and `rotation` are the lengths of their parts along (about) the two tangents. A whole foundation has forces,
-/// no pressures.
-std::vector<InterfaceQuantity> interface_quantities(const Interface& interface, const Values& behaviour) {
-  const Space space = interface.space;
-  std::vector<InterfaceQuantity> made{{"axial", Column::axial, "N"},
-                                      {"shear", Column::shear, "N"},
-                                      {"moment", Column::moment, "N m"},
-                                      {"rotation", Column::rotation, "rad"}};
-  if (space.dimension == 3)
-    for (const InterfaceQuantity& each :
-         {InterfaceQuantity{"shear_1", Column::shear_1, "N"}, InterfaceQuantity{"shear_2", Column::shear_2, "N"},
-          InterfaceQuantity{"moment_1", Column::moment_1, "N m"}, InterfaceQuantity{"moment_2", Column::moment_2, "N m"},
-          InterfaceQuantity{"torsion", Column::torsion, "N m"}, InterfaceQuantity{"rotation_1", Column::rotation_1, "rad"},
-          InterfaceQuantity{"rotation_2", Column::rotation_2, "rad"}})
-      made.push_back(each);
-  made.push_back({"settlement", Column::settlement, "m"});
-  if (space.dimension == 2) made.push_back({"tilt", Column::tilt_1, "rad"});
-  if (space.dimension == 3) made.push_back({"tilt_1", Column::tilt_1, "rad"}), made.push_back({"tilt_2", Column::tilt_2, "rad"});
-  made.push_back({"uplifted_ratio", Column::uplifted_ratio, "1"});
-  made.push_back({"max_opening", Column::max_opening, "m"});
-  if (!interface.footprint) {
-    made.push_back({"max_pressure", Column::max_pressure, "Pa"});
-    return made;
-  }
-  if (!radiation_damping(*interface.footprint).empty())
-    for (const InterfaceQuantity& each : forces_in_law(space)) made.push_back(each);
-  const StatedNumbers stated = stated_numbers(behaviour);
-  if (stated.service) made.push_back({"bearing_utilisation", Column::bearing_utilisation, "1"});
-  if (stated.service && stated.ultimate && *stated.ultimate > *stated.service)
-    made.push_back({"bearing_capacity", Column::bearing_capacity, "N"});
-  if (stated.friction_angle) made.push_back({"sliding_utilisation", Column::sliding_utilisation, "1"});
+/// The numbers that an interface has. A whole foundation has forces, no pressures.
+std::vector<InterfaceQuantity> quantities_of(const Interface& interface, const Values& behaviour) {
+  const StatedNumbers stated = interface.footprint ? stated_numbers(behaviour) : StatedNumbers();
+  const auto has = [&](InterfaceQuantity::Needs needed) {
+    switch (needed) {
+      case InterfaceQuantity::Needs::nothing:
+        return true;
+      case InterfaceQuantity::Needs::points:
+        return !interface.footprint;
+      case InterfaceQuantity::Needs::dashpots:
+        return interface.footprint && !radiation_damping(*interface.footprint).empty();
+      case InterfaceQuantity::Needs::bearing_strength:
+        return stated.service.has_value();
+      case InterfaceQuantity::Needs::growing_strength:
+        return stated.service && stated.ultimate && *stated.ultimate > *stated.service;
+      case InterfaceQuantity::Needs::friction:
+        return stated.friction_angle.has_value();
+    }
+    return false;
+  };
+  std::vector<InterfaceQuantity> made;
+  for (const InterfaceQuantity& each : interface_quantities())
+    if ((each.dimension == 0 || each.dimension == interface.space.dimension) && has(each.needs)) made.push_back(each);
   return made;
 }
 /// The law of an interface, or the model of a foundation, as the case states it: that of a bonded run is another one.
@@ -104,26 +78,23 @@ bool has_quantity(const BuiltCase& built, const Request& request) {
   if (request.kind != Column::bearing_utilisation && request.kind != Column::bearing_capacity &&
       request.kind != Column::sliding_utilisation)
     return true;
-  const std::vector<InterfaceQuantity> all = interface_quantities(built.model.interfaces[k], *built.behaviours[k]);
+  const std::vector<InterfaceQuantity> all = quantities_of(built.model.interfaces[k], *built.behaviours[k]);
   return std::ranges::find(all, request.kind, &InterfaceQuantity::kind) != all.end();
-}
-/// Motions of the base above an interface.
-bool is_base_motion(Column kind) {
-  return kind == Column::settlement || kind == Column::tilt_1 || kind == Column::tilt_2;
 }
 /// Those that need a tangential part of the interface.
 bool is_shear(Column kind) {
   return kind == Column::shear || kind == Column::shear_1 || kind == Column::shear_2 || kind == Column::torsion;
 }
 
-constexpr std::array<InterfaceQuantity, 8> energy_quantities{{{"kinetic", Column::kinetic, "J"},
-                                                              {"strain", Column::strain, "J"},
-                                                              {"stored", Column::stored, "J"},
-                                                              {"interface_dissipated", Column::interface_dissipated, "J"},
-                                                              {"damping", Column::damping, "J"},
-                                                              {"impact", Column::impact, "J"},
-                                                              {"external", Column::external, "J"},
-                                                              {"residual", Column::residual, "J"}}};
+/// Energies of what a run has not are left out.
+bool has_energy(const BuiltCase& built, Column kind) {
+  const auto filters = [](const Stage& stage) { return stage.type == Stage::Type::dynamics && stage.scheme.filtered(); };
+  if (kind == Column::plastic) return PlasticBulk(built.model).any();
+  if (kind == Column::stop) return !stopping_stages(built.plan).empty();
+  if (kind == Column::algorithmic || kind == Column::filter)
+    return !built.plan.method->constrains() && std::ranges::any_of(built.plan.stages, filters);
+  return true;
+}
 
 struct PointQuantity {
   std::string word;
@@ -227,7 +198,7 @@ Request asked_request(const CaseHistory& history, const Case& read, BuiltCase& b
   const Interface& joint = built.model.interfaces[interface];
   const std::string owner = joint.footprint ? "the foundation " + in_quotes(joint.name) : "an interface";
   const InterfaceQuantity quantity =
-      find_quantity(interface_quantities(joint, stated_behaviour(read, built, static_cast<std::size_t>(interface))), history, owner);
+      find_quantity(quantities_of(joint, stated_behaviour(read, built, static_cast<std::size_t>(interface))), history, owner);
   Request request = make(quantity.kind, name.empty() ? fmt::format("{}.{}", joint.name, quantity.word) : name, quantity.unit);
   request.interface = interface;
   return request;
@@ -268,9 +239,9 @@ void add_requests(const Case& read, const CaseNames& names, BuiltCase& built) {
     // the drift of the top needs the tilt of the base, which nodes of solids do not have
     const bool nodes_turn_not = built.top >= 0 && built.base >= 0 && !moves(model, built.base_turn());
     for (std::size_t k = 0; k < model.interfaces.size(); ++k)
-      for (const InterfaceQuantity& quantity : interface_quantities(model.interfaces[k], *built.behaviours[k])) {
+      for (const InterfaceQuantity& quantity : quantities_of(model.interfaces[k], *built.behaviours[k])) {
         if (is_shear(quantity.kind) && !bears_shear(model.interfaces[k])) continue;
-        if (is_base_motion(quantity.kind) && !(nodes_turn_not && k == 0 && quantity.kind != Column::settlement)) continue;
+        if (quantity.in_pose != nullptr && !(nodes_turn_not && k == 0 && quantity.kind != Column::settlement)) continue;
         requests.push_back(make(quantity.kind, fmt::format("{}.{}", model.interfaces[k].name, quantity.word), quantity.unit));
         requests.back().interface = static_cast<int>(k);
       }
@@ -290,17 +261,9 @@ void add_requests(const Case& read, const CaseNames& names, BuiltCase& built) {
     requests.push_back(std::move(request));
   }
   add_envelopes(output, built);
-  if (output.energies) {
-    for (const InterfaceQuantity& quantity : energy_quantities)
-      requests.push_back(make(quantity.kind, fmt::format("energy.{}", quantity.word), quantity.unit));
-    if (PlasticBulk(model).any()) requests.push_back(make(Column::plastic, "energy.plastic", "J"));
-    if (!stopping_stages(built.plan).empty()) requests.push_back(make(Column::stop, "energy.stop", "J"));
-    const auto filters = [](const Stage& stage) { return stage.type == Stage::Type::dynamics && stage.scheme.filtered(); };
-    if (!built.plan.method->constrains() && std::ranges::any_of(built.plan.stages, filters)) {
-      requests.push_back(make(Column::algorithmic, "energy.algorithmic", "J"));
-      requests.push_back(make(Column::filter, "energy.filter", "J"));
-    }
-  }
+  if (output.energies)
+    for (const EnergyQuantity& each : energy_quantities())
+      if (has_energy(built, each.kind)) requests.push_back(make(each.kind, fmt::format("energy.{}", each.word), "J"));
 }
 
 }  // namespace uplift

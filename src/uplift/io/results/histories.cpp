@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "uplift/io/text/numbers.h"
+#include "uplift/run/quantities.h"
 
 namespace uplift {
 
