@@ -122,8 +122,7 @@ InterfaceViewer::InterfaceViewer(const Model& model, double gap_tolerance, const
     layout.stiffness = normal_stiffness(interface);
     layout.bonded = interface.law != nullptr && !interface.law->scales().opens;
     layout.rule = gap_rule(interface);
-    layout.gaps_differ = !layout.rule.opens || layout.rule.softness > 0;
-    if (layout.gaps_differ) gap_.setZero(std::max<Index>(gap_.size(), layout.points));
+    if (layout.rule.differs()) gap_.setZero(std::max<Index>(gap_.size(), layout.points));
     if (const std::size_t k = layouts_.size(); k < facets.size() && facets[k] != nullptr) {
       layout.share = PositiveShare(*facets[k]);
       layout.corners = facets[k]->corners;
@@ -289,7 +288,7 @@ double InterfaceViewer::pulling_points(const Layout& layout, const double* force
 void InterfaceViewer::look_at_points(const Layout& layout, const State& state, InterfaceView& view) {
   const int n = layout.points;
   const double *opening = state.opening.data() + layout.normal, *p = state.mean_force.data() + layout.normal;
-  const double* gap = layout.gaps_differ ? gaps(layout, opening, state.force.data() + layout.normal) : opening;
+  const double* gap = layout.rule.differs() ? gaps(layout, opening, state.force.data() + layout.normal) : opening;
   const double *area = layout.area.data(), *inverse = layout.inverse_area.data(), *along = layout.along.data(),
                *slope = layout.slope_weight[0].data();
   const double tolerance = tolerance_;

@@ -20,6 +20,8 @@ struct GapRule {
   double gap(double opening, double traction) const {
     return opens ? opening - softness * std::max(traction, 0.0) : std::min(opening, 0.0);
   }
+  /// Whether gaps are other than the openings.
+  bool differs() const { return !opens || softness > 0; }
 };
 GapRule gap_rule(const Interface& interface);
 
@@ -47,7 +49,6 @@ class InterfaceViewer {
     double stiffness = 0;   // Pa/m of the closed joint; infinite for constraints
     bool bonded = false;    // it may pull: the tension share is asked for
     GapRule rule;
-    bool gaps_differ = false;               // from the openings
     std::vector<Facets::Corner> corners;    // of the surface that are no points: openings are extrapolated to them
     bool at_edge = false;                   // pressures too
     bool plane = false;                     // openings are those of a plane, closed ones too: they are extrapolated wherever they are

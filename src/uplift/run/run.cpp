@@ -7,7 +7,6 @@
 #include <cmath>
 #include <utility>
 
-#include "uplift/laws/macro_element.h"
 #include "uplift/run/probe.h"
 #include "uplift/run/runner.h"
 
@@ -88,15 +87,9 @@ Runner::Runner(const Model& model, const RunPlan& plan, const std::vector<const 
       keeping_(keeping),
       b_(stack_interfaces(model)),
       gap_(stack_gaps(model)),
-      viewer_(model, plan.gap_tolerance, plan.bases, plan.facets),
-      radiation_(model, b_),
-      rest_(plan.rest.get()),
-      views_(model.interfaces.size()) {
-  has_walls_ = std::ranges::any_of(plan.is_wall, [](char wall) { return wall != 0; });
-  has_strength_ = std::ranges::any_of(model.interfaces, [](const Interface& interface) {
-    const MacroElement* foundation = as_macro_element(interface.law.get());
-    return foundation != nullptr && (foundation->surfaces().has_bearing() || foundation->surfaces().has_sliding());
-  });
+      rotations_(rotations_on_interfaces(model, b_)),
+      bases_(model, plan, b_, run_.result),
+      rest_(plan.rest.get()) {
   run_.result.name = plan.name;
   run_.result.label = plan.label;
   run_.result.group = plan.group;
@@ -112,8 +105,7 @@ RunResult Runner::go() {
   const auto start = std::chrono::steady_clock::now();
   execute();
   check_tables();
-  run_.result.steps.average(plan_.window);
-  take_window_peaks();
+  bases_.finish();
   run_.result.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - shown_;
   run_.result.counts.factorisations = run_.linear.factorisations;
   if (!run_.linear.notice.empty()) run_.result.notes.push_back(run_.linear.notice);
@@ -138,36 +130,6 @@ void Runner::check_tables() {
     }
 }
 
-/// Largest forces of the bases as means over the window, which the verdict shows.
-void Runner::take_window_peaks() {
-  const StepRecord& steps = run_.result.steps;
-  run_.result.max_step_pressure = run_.result.max_pressure;
-  for (Peak* peak : {&run_.result.max_base_moment, &run_.result.max_base_shear, &run_.result.max_pressure}) peak->value = peak->time = 0;
-  const auto note = [](Peak& peak, double value, double time) {
-    if (std::abs(value) > std::abs(peak.value)) peak.value = value, peak.time = time;
-  };
-  const bool plane = model_.space.dimension == 2;
-  double force = 0, moment = 0;  // N, N m: what is to be told from round-off
-  for (std::size_t k = 0; k < steps.extremes.size(); ++k) {
-    if (is_wall(k)) continue;
-    double arm = 0;
-    for (const Place& place : model_.interfaces[k].position) arm = std::max(arm, (place - model_.interfaces[k].reference).norm());
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-      const StepRecord::Instant& now = steps.at(i, k);
-      note(run_.result.max_base_moment, plane ? now.moment_1 : std::hypot(now.moment_1, now.moment_2), steps.time[i]);
-      note(run_.result.max_base_shear, plane ? now.shear_1 : std::hypot(now.shear_1, now.shear_2), steps.time[i]);
-      const double size = std::hypot(now.axial, now.shear_1, now.shear_2);
-      force = std::max(force, size), moment = std::max(moment, arm * size);
-    }
-    note(run_.result.max_pressure, steps.extremes[k].max_pressure.value, steps.extremes[k].max_pressure.time);
-  }
-  constexpr double round_off = 1e-9, least = 1e-9;  // share of it; N, N m
-  if (std::abs(run_.result.max_base_shear.value) < std::max(round_off * force, least))
-    run_.result.max_base_shear.value = run_.result.max_base_shear.time = 0;
-  if (std::abs(run_.result.max_base_moment.value) < std::max(round_off * moment, least))
-    run_.result.max_base_moment.value = run_.result.max_base_moment.time = 0;
-}
-
 void Runner::fail(std::string why, const InterfaceProblem* problem) {
   run_.result.status = RunStatus::failed;
   run_.result.reason = std::move(why);
@@ -190,8 +152,6 @@ void Runner::execute() {
   laws_ = std::make_unique<Behaviours>(model_, *plan_.method, compliance.rows() > 0 ? &compliance : nullptr);
   laws_->solver = plan_.interface_solver;
 
-  for (const Stage& stage : plan_.stages) planned_ += stage.type == Stage::Type::dynamics ? stage.duration : 0;
-  if (dynamic != nullptr) tail_ = 0.1 * planned_ + 0.5 * dynamic->step;
   if (keeping_.from == nullptr)
     begin();
   else if (!resume())
@@ -228,10 +188,9 @@ bool Runner::resume() {
     return false;
   run_ = from;
   run_.result.columns = plan_.requests;
-  summed_up_ = run_.result.steps.size();
+  bases_.resume();
   rest_ = nullptr;  // of static stages before
   if (run_.second_order) use_second_order();
-  rotations_ = rotations_on_interfaces(model_, b_);
   return true;
 }
 
@@ -247,9 +206,8 @@ void Runner::run_stages() {
     if (stage.p_delta && geometric_ == nullptr && !second_order()) return;
     if (rest_ != nullptr) release();
     if (!run_.ledger && run_.step == 0 && keeping_.from == nullptr) {  // the first dynamic stage begins
-      if (run_.stage > 0) note_rest();
+      if (run_.stage > 0) bases_.note_rest(run_.state);
       add_initial_state();
-      rotations_ = rotations_on_interfaces(model_, b_);
       if (keeping_.begin) return keeping_.begin(run_);
     }
     const Bulk stage_bulk(plan_.solver->matrices_of(model_), geometric_.get());
@@ -310,7 +268,7 @@ ForceStage Runner::force_stage(const Stage& stage) const {
 /// Tells the observer, if there is one, of the present state. Its time is not that of the run.
 void Runner::show(const Stage& stage, const Stepper* stepper, long step, bool last) {
   if (!observe_) return;
-  sum_up(stage.step);
+  bases_.sum_up(stage.step);
   const auto start = std::chrono::steady_clock::now();
   std::optional<State> resting;
   if (rest_ != nullptr) resting = carried();

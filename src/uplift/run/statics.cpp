@@ -29,11 +29,11 @@ bool Runner::statics(const Stage& stage) {
   const std::vector<int> rotations = rotations_on_interfaces(resting, rest_ != nullptr ? stack_interfaces(*rest_) : b_);
   const Energies before = run_.ledger ? run_.ledger->energies : run_.static_energies;
   Energies energies = before;
-  Recorder recorder(resting, plan_, run_.state, energies, nullptr, views_, {resting, second_order_of(stage)}, stage.steps, 0,
+  Recorder recorder(resting, plan_, run_.state, energies, nullptr, bases_.views(), {resting, second_order_of(stage)}, stage.steps, 0,
                     run_.load_steps);
   const auto record = [&](const StaticProgress& progress) {
     energies = static_energies(resting, before, progress);
-    viewer_.look(run_.state, views_);
+    bases_.look(run_.state);
     recorder.record(true, run_.static_stages + progress.share);
   };
   if (run_.state.load_factor == 0) {
@@ -42,15 +42,13 @@ bool Runner::statics(const Stage& stage) {
   }
   const auto after_step = [&](const StaticProgress& progress) {
     record(progress);
-    static_share_ = progress.share;
-    look_over_bases();
-    return moves_little(resting, rotations);
+    return bases_.moves_little(run_.state, resting, rotations, progress.share);
   };
   const bool begins_second_order = stage.p_delta && geometric_ == nullptr;
   bool solved = stage.p_delta && geometric_ != nullptr ? solve_second_order(stage, after_step) : solve(stage, nullptr, nullptr, after_step);
   recorder.finish();
-  if (solved && begins_second_order) solved = stand_in_second_order(stage, before, energies) && moves_little(resting, rotations);
-  static_share_.reset();
+  if (solved && begins_second_order)
+    solved = stand_in_second_order(stage, before, energies) && bases_.moves_little(run_.state, resting, rotations, 1);
   ++run_.static_stages;
   run_.static_energies = energies;
   if (run_.ledger) run_.result.final_energy = run_.ledger->energies = energies;
@@ -96,15 +94,6 @@ Energies Runner::static_energies(const Model& resting, const Energies& before, c
   return energies;
 }
 
-/// What the verdict holds the rest of the run against.
-void Runner::note_rest() {
-  viewer_.look(run_.state, views_);
-  for (std::size_t k = 0; k < views_.size(); ++k) {
-    run_.result.steps.rest.push_back(views_[k].resultant);
-    run_.result.steps.rest_poses.push_back(viewer_.pose(run_.state, k, views_[k]));
-  }
-}
-
 /// Static stages alone: how the structure stands at their end, or where they ended the run, is the result; the table has their load steps.
 /// What the verdict calls left is then measured from the unloaded structure.
 void Runner::stand() {
@@ -117,13 +106,12 @@ void Runner::stand() {
   }
   if (rest_ != nullptr) run_.state = carried();
   run_.result.final_energy = run_.static_energies;
-  run_.result.steps.reserve(model_.interfaces.size(), 1, 1);
-  viewer_.look(run_.state, views_);
-  note_views();
-  sum_up(0);
-  for (const InterfaceView& view : views_) run_.result.steps.rest.push_back(view.resultant);
-  Recorder recorder(model_, plan_, run_.state, run_.result.final_energy, nullptr, views_, {model_, second_order_of(plan_.stages.back())}, 0,
-                    0, run_.result);
+  bases_.reserve(0, 1);
+  bases_.note(run_.state);
+  bases_.sum_up(0);
+  for (const InterfaceView& view : bases_.views()) run_.result.steps.rest.push_back(view.resultant);
+  Recorder recorder(model_, plan_, run_.state, run_.result.final_energy, nullptr, bases_.views(),
+                    {model_, second_order_of(plan_.stages.back())}, 0, 0, run_.result);
   recorder.record(true);
   if (plan_.frames > 0) recorder.picture(run_.state);
   recorder.finish();
@@ -171,11 +159,11 @@ bool Runner::stand_in_second_order(const Stage& stage, const Energies& before, E
   if (!second_order(add)) return false;
   energies = static_energies(resting, before, all);
   energies.external += std::exchange(energies.residual, 0);
-  viewer_.look(run_.state, views_);
-  Recorder recorder(resting, plan_, run_.state, energies, nullptr, views_, {resting, second_order_of(stage)}, 1, 0, run_.load_steps);
+  bases_.look(run_.state);
+  Recorder recorder(resting, plan_, run_.state, energies, nullptr, bases_.views(), {resting, second_order_of(stage)}, 1, 0,
+                    run_.load_steps);
   recorder.record(true, run_.static_stages + 1);
   recorder.finish();
-  look_over_bases();
   return true;
 }
 
