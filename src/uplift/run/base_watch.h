@@ -6,7 +6,7 @@
 #include "uplift/dynamics/step.h"
 #include "uplift/run/interface_viewer.h"
 #include "uplift/run/radiation.h"
-#include "uplift/run/run.h"
+#include "uplift/run/result.h"
 
 namespace uplift {
 

@@ -19,7 +19,7 @@ double floor_record_bytes(const RunPlan& plan) {
   return 8 * steps * static_cast<double>(plan.floors.size());
 }
 
-FloorRecorder::FloorRecorder(const Model& model, const RunPlan& plan, long steps, double step, RunResult& result) : result_(result) {
+FloorRecorder::FloorRecorder(const Model& model, const RunPlan& plan, long steps, double step, Recorded& result) : result_(result) {
   result_.floors.resize(plan.floors.size());
   for (std::size_t k = 0; k < plan.floors.size(); ++k) {
     const FloorRequest& floor = plan.floors[k];

@@ -2,7 +2,7 @@
 #include <utility>
 #include <vector>
 
-#include "uplift/run/run.h"
+#include "uplift/run/result.h"
 
 namespace uplift {
 
@@ -16,7 +16,7 @@ bool records_accelerations(const RunPlan& plan);
 class FloorRecorder {
  public:
   /// For so many steps [s] of a dynamic stage, whose room is taken here; a later stage goes on in the same records.
-  FloorRecorder(const Model& model, const RunPlan& plan, long steps, double step, RunResult& result);
+  FloorRecorder(const Model& model, const RunPlan& plan, long steps, double step, Recorded& result);
   bool any() const { return !sources_.empty(); }
   /// `acceleration`: of the free unknowns, mean from one time to another (or at one time), relative to the moving frame where there is one.
   void record(const Vector& acceleration, double from, double to);
@@ -28,7 +28,7 @@ class FloorRecorder {
     std::vector<std::pair<const TimeFunction*, double>> supports, ground;
   };
   std::vector<Source> sources_;
-  RunResult& result_;
+  Recorded& result_;
 };
 
 }  // namespace uplift

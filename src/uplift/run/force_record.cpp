@@ -9,7 +9,7 @@ bool asks_for_forces(const RunPlan& plan) {
          std::ranges::any_of(plan.requests, [](const Request& request) { return request.kind == Request::Kind::force; });
 }
 
-ForceRecorder::ForceRecorder(const ForceStage& stage, const RunPlan& plan, const Stepper* stepper, const State& state, RunResult& result)
+ForceRecorder::ForceRecorder(const ForceStage& stage, const RunPlan& plan, const Stepper* stepper, const State& state, Recorded& result)
     : plan_(plan), stepper_(stepper), state_(state), result_(result), start_(Vector::Zero(stage.model.free())) {
   for (const Request& request : plan.requests)
     if (request.kind == Request::Kind::force) quantities_.push_back(request.force.get());

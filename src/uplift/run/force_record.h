@@ -4,7 +4,7 @@
 
 #include "uplift/dynamics/step.h"
 #include "uplift/run/force_rows.h"
-#include "uplift/run/run.h"
+#include "uplift/run/result.h"
 
 namespace uplift {
 
@@ -15,7 +15,7 @@ bool asks_for_forces(const RunPlan& plan);
 class ForceRecorder {
  public:
   /// `stepper` is null for a state at rest. `state` and the stage's parts must stay alive.
-  ForceRecorder(const ForceStage& stage, const RunPlan& plan, const Stepper* stepper, const State& state, RunResult& result);
+  ForceRecorder(const ForceStage& stage, const RunPlan& plan, const Stepper* stepper, const State& state, Recorded& result);
   /// Where the value of a request with kind `force` is found after record().
   const double* value(const Request& request) const;
   /// Evaluates the last step.
@@ -25,7 +25,7 @@ class ForceRecorder {
   const RunPlan& plan_;
   const Stepper* stepper_;
   const State& state_;
-  RunResult& result_;
+  Recorded& result_;
   std::vector<const ForceQuantity*> quantities_;  // of the columns, then of the envelopes
   std::size_t first_of_envelopes_ = 0;
   std::unique_ptr<const ForceMeter> meter_;

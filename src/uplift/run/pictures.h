@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "uplift/dynamics/step.h"
-#include "uplift/run/run.h"
+#include "uplift/run/result.h"
 
 namespace uplift {
 

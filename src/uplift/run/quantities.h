@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "uplift/dynamics/energy.h"
-#include "uplift/run/run.h"
+#include "uplift/run/plan.h"
 #include "uplift/run/step_record.h"
 
 namespace uplift {

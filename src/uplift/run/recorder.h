@@ -9,7 +9,7 @@
 #include "uplift/run/floor_record.h"
 #include "uplift/run/force_record.h"
 #include "uplift/run/pictures.h"
-#include "uplift/run/run.h"
+#include "uplift/run/result.h"
 #include "uplift/run/run_state.h"
 
 namespace uplift {
@@ -20,7 +20,7 @@ class Recorder {
   /// For so many steps [s] of a dynamic stage: room is made for all of them. `views` holds what the interfaces look like whenever record is
   /// called; it keeps its place, as the state and the energies do. `stepper` says what the accelerations are; null: at rest.
   Recorder(const Model& model, const RunPlan& plan, const State& state, const Energies& energies, const Stepper* stepper,
-           const std::vector<InterfaceView>& views, const ForceStage& stage, long steps, double step, RunResult& result);
+           const std::vector<InterfaceView>& views, const ForceStage& stage, long steps, double step, Recorded& result);
   /// Notes the numbers of every column; they become a row of the table when `row` is set. Peaks and rows are made for many steps at a time.
   void record(bool row) { record(row, state_.time); }
   /// The same in a static stage: `abscissa` takes the place of the time.
@@ -72,7 +72,7 @@ class Recorder {
   const Energies& energies_;
   const Stepper* stepper_;
   const std::vector<InterfaceView>& views_;
-  RunResult& result_;
+  Recorded& result_;
   FloorRecorder floors_;
   Pictures pictures_;
   std::unique_ptr<ForceRecorder> forces_;        // null where no forces are asked for

@@ -12,57 +12,6 @@
 
 namespace uplift {
 
-std::string_view to_string(RunStatus status) {
-  switch (status) {
-    case RunStatus::completed:
-      return "completed";
-    case RunStatus::overturned:
-      return "overturned";
-    case RunStatus::separated:
-      return "separated";
-    case RunStatus::failed:
-      return "failed";
-    case RunStatus::interrupted:
-      return "interrupted";
-  }
-  return "";
-}
-
-const Stage* dynamic_stage(const RunPlan& plan) {
-  for (const Stage& stage : plan.stages)
-    if (stage.type == Stage::Type::dynamics) return &stage;
-  return nullptr;
-}
-
-bool statics_alone(const RunPlan& plan) {
-  return !plan.stages.empty() && dynamic_stage(plan) == nullptr;
-}
-
-std::vector<std::size_t> stopping_stages(const RunPlan& plan) {
-  std::vector<std::size_t> found;
-  for (std::size_t k = 1; k < plan.stages.size(); ++k)
-    if (plan.stages[k].type == Stage::Type::statics && plan.stages[k - 1].type == Stage::Type::dynamics) found.push_back(k);
-  return found;
-}
-
-int find_request(const std::vector<Request>& columns, Request::Kind kind, int unknown_or_interface) {
-  using enum Request::Kind;
-  const bool node = kind == displacement || kind == velocity || kind == acceleration || kind == absolute_acceleration;
-  const auto found = std::ranges::find_if(columns, [&](const Request& column) {
-    return column.kind == kind && column.below < 0 && (node ? column.unknown : column.interface) == unknown_or_interface;
-  });
-  return found == columns.end() ? -1 : static_cast<int>(found - columns.begin());
-}
-
-int find_request(const std::vector<Request>& columns, std::string_view name) {
-  const auto found = std::ranges::find(columns, name, &Request::name);
-  return found == columns.end() ? -1 : static_cast<int>(found - columns.begin());
-}
-
-std::string RunResult::created_percent() const {
-  return energy_scale > 0 ? fmt::format("{:.3g} %", 100 * energy_created / energy_scale) : "0 %";
-}
-
 namespace {
 
 Vector stack_gaps(const Model& model) {
@@ -94,11 +43,6 @@ Runner::Runner(const Model& model, const RunPlan& plan, const std::vector<const 
   run_.result.label = plan.label;
   run_.result.group = plan.group;
   run_.result.expected_to_fail = plan.expected_to_fail;
-  run_.result.max_uplifted_ratio = {"max_uplifted_ratio", "1", 0, 0};
-  run_.result.max_opening = {"max_opening", "m", 0, 0};
-  run_.result.max_base_moment = {"max_base_moment", "N m", 0, 0};
-  run_.result.max_base_shear = {"max_base_shear", "N", 0, 0};
-  run_.result.max_pressure = {"max_pressure", "Pa", 0, 0};
 }
 
 RunResult Runner::go() {

@@ -213,14 +213,25 @@ void list_parts(Archive& archive, T& frame) {
 }
 
 /// All but the columns, which are those of the plan.
+template <class Archive, class T>
+void list_recorded(Archive& archive, T& r) {
+  archive(r.table, r.peaks, r.combined, r.floors, r.envelopes, r.frames);
+}
+
+template <class Archive, SameAs<Recorded> T>
+void list_parts(Archive& archive, T& recorded) {
+  list_recorded(archive, recorded);
+}
+
 template <class Archive, SameAs<RunResult> T>
 void list_parts(Archive& archive, T& r) {
-  archive(r.name, r.label, r.group, r.status, r.reason, r.expected_to_fail, r.counts, r.wall, r.step_seconds, r.end_time, r.table,
-          r.load_steps, r.peaks, r.combined, r.floors, r.envelopes, r.equilibrium, r.steps, r.step_means);
+  list_recorded(archive, r);
+  archive(r.name, r.label, r.group, r.status, r.reason, r.expected_to_fail, r.counts, r.wall, r.step_seconds, r.end_time, r.load_steps,
+          r.equilibrium, r.steps, r.step_means);
   archive(r.max_uplifted_ratio, r.max_opening, r.max_base_moment, r.max_base_shear, r.max_pressure, r.max_step_pressure, r.time_uplifted,
           r.first_uplift, r.full_loss);
   archive(r.energy_created, r.energy_created_time, r.energy_lost, r.energy_lost_time, r.energy_scale, r.max_penetration, r.final_energy,
-          r.frames, r.problem, r.not_unique, r.notes);
+          r.problem, r.not_unique, r.notes);
 }
 
 template <class Archive, SameAs<RunState> T>
@@ -233,7 +244,7 @@ void list_parts(Archive& archive, T& run) {
 
 namespace {
 
-constexpr std::string_view magic = "uplift run state 7\n";
+constexpr std::string_view magic = "uplift run state 8\n";
 
 }  // namespace
 

@@ -6,7 +6,7 @@
 #include "uplift/dynamics/bulk.h"
 #include "uplift/dynamics/step.h"
 #include "uplift/model/geometric.h"
-#include "uplift/run/run.h"
+#include "uplift/run/result.h"
 
 namespace uplift {
 
@@ -32,7 +32,7 @@ struct RunState {
 
   // what was recorded
   RunResult result;
-  RunResult load_steps;       // table of the static stages
+  Recorded load_steps;        // of the static stages
   long next_check = 1;        // of the equilibrium in the present stage
   double recorded_until = 0;  // s: accelerations are means from here to the next instant
   Frame peak_frame;           // at the largest uplift of the present stage; empty when that of an earlier stage is larger

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "uplift/io/files.h"
-#include "uplift/run/run.h"
+#include "uplift/run/result.h"
 
 namespace uplift {
 

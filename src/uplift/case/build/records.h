@@ -6,7 +6,7 @@
 
 #include "uplift/case/schema/record_sections.h"
 #include "uplift/motion/motion_function.h"
-#include "uplift/run/run.h"
+#include "uplift/run/plan.h"
 
 // Recorded and generated motions of a case: `[[record]]` tables.
 namespace uplift {

@@ -3,7 +3,7 @@
 #include "uplift/linear/solver.h"
 #include "uplift/model/builder.h"
 #include "uplift/model/wave_functions.h"
-#include "uplift/run/run.h"
+#include "uplift/run/plan.h"
 
 namespace uplift {
 

@@ -2,7 +2,7 @@
 #include "uplift/case/build/model.h"
 #include "uplift/elements/absorbing.h"
 #include "uplift/linear/solver.h"
-#include "uplift/run/run.h"
+#include "uplift/run/plan.h"
 
 // The ground beside the model: lateral nodes that move together, and the free field that lateral boundaries follow.
 namespace uplift {

@@ -1,6 +1,6 @@
 #pragma once
 #include "uplift/io/results/result_writer.h"
-#include "uplift/run/run.h"
+#include "uplift/run/result.h"
 
 namespace uplift {
 

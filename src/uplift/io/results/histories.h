@@ -3,7 +3,7 @@
 #include <string_view>
 #include <vector>
 
-#include "uplift/run/run.h"
+#include "uplift/run/result.h"
 
 namespace uplift {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "uplift/io/results/result_writer.h"
-#include "uplift/run/run.h"
+#include "uplift/run/result.h"
 
 // What several result documents write in the same way.
 namespace uplift {
