@@ -59,11 +59,12 @@ class ContactImpacts {
   void begin_step(State& begin, double step);
   /// Work of what the beginning then lacks in equilibrium, which belongs to the impact [J].
   double lag_work(const Vector& increment) const;
-  /// Takes forces out of the beginning of a step that would create energy [the scale of energies: J]. True when there are any: the step is
+  /// Takes forces out of the beginning of a step that would create energy; `scale`: of energies [J]. True when there are any: the step is
   /// solved again.
   bool drop_creating(const std::vector<Block>& blocks, State& begin, const InterfaceSolution& end, const Energies& energies, double scale);
+  /// Puts these forces back.
   void restore_dropped(State& begin);
-  /// A step that has failed leaves its beginning as it was.
+  /// Takes back what begin_step did: a step that has failed leaves its beginning as it was.
   void undo(State& begin);
   /// Corrects the end of the step by the rule of impact. The mean force of the end is that with the impulse where it belongs to the force.
   void apply(SolvedStep& step);

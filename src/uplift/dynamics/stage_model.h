@@ -4,7 +4,7 @@
 namespace uplift {
 
 /// What a stage moves. All must stay alive.
-struct StageModel {
+struct StageModel {  // of values that stay alive: no temporaries
   const Model& model;
   const Bulk& bulk;
   const Sparse& b;    // of all interfaces: rows x free

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "uplift/contact/unheld.h"
-#include "uplift/dynamics/step.h"
 #include "uplift/math/small.h"
 
 namespace uplift {

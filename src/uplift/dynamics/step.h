@@ -37,6 +37,8 @@ class Stepper {
  public:
   Stepper(const StageModel& stage, const ContactChoice& contact, const ImpactRule& impact, const LinearSolver& solver,
           const StepOptions& options, LinearCounts& counts);
+  Stepper(const Stepper&) = delete;  // its parts refer to it
+  Stepper& operator=(const Stepper&) = delete;
   /// Takes over displacement, velocity, opening and history; the initial acceleration follows from the balance (the path average
   /// needs none: that of its state is empty). With the handover of a stage before, energies go on counting, and so does its acceleration
   /// when it is the same scheme's.

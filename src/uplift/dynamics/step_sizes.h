@@ -39,7 +39,7 @@ struct StepSize {
 /// The nominal step of a stage and its halves, each made when it is needed for the first time, and kept.
 class StepSizes {
  public:
-  /// `impact`: null where no impacts act. All must stay alive; of the options the path average and the filters are those in use.
+  /// `impact`: null where no impacts act. All must stay alive. `options`: as returned by in_use().
   StepSizes(const StageModel& stage, const ContactChoice& contact, const ImpactRule* impact, const SupportMotion& motion,
             const LinearSolver& solver, const StepOptions& options, LinearCounts& counts);
   StepSize& at(int halving) {

@@ -110,13 +110,12 @@ void give_back_free_memory() {
 #endif
 }
 
-void provide_pages(const void* begin, std::size_t bytes) {
-#if defined(MADV_POPULATE_WRITE)
-  constexpr std::size_t page = 4096, most = 2 << 20;  // a long run may end early
+void provide_pages([[maybe_unused]] const void* begin, [[maybe_unused]] std::size_t bytes) {
+#if defined(MADV_POPULATE_WRITE)  // Linux 5.14 and later
+  static const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
   if (bytes < page) return;
   const auto first = reinterpret_cast<std::uintptr_t>(begin), from = first / page * page;
-  madvise(reinterpret_cast<void*>(from), first + std::min(bytes, most) - from,
-          MADV_POPULATE_WRITE);  // a wish: an older system has no answer
+  madvise(reinterpret_cast<void*>(from), first + bytes - from, MADV_POPULATE_WRITE);  // a wish: nothing depends on the answer
 #endif
 }
 

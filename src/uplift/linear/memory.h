@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -25,14 +26,17 @@ void prepare_heap();
 /// Hands pages of the heap that nobody uses back to the system, where the C library can: after an analysis, before what it was made for.
 void give_back_free_memory();
 
-/// Has the system provide the pages of memory that is filled step by step, at once, where it can: one at a time, when it is first written
-/// to, they cost a fifth of the time of a short step. The contents stay as they are. Of a large block only the first 2 MB.
+/// Asks the system to map, at once, the pages of a block that is filled step by step: faulting them in one by one costs a fifth of a short
+/// step. The contents stay as they are.
 void provide_pages(const void* begin, std::size_t bytes);
 
-/// Those of what a vector has reserved.
+/// At most this much of what a run records is mapped before its first step [bytes]: it may end early.
+inline constexpr std::size_t most_provided = 64 << 20;
+
+/// What a vector has reserved, at most so many bytes of it.
 template <class T>
-void provide_pages(const std::vector<T>& reserved) {
-  provide_pages(reserved.data() + reserved.size(), (reserved.capacity() - reserved.size()) * sizeof(T));
+void provide_pages(const std::vector<T>& reserved, std::size_t most) {
+  provide_pages(reserved.data() + reserved.size(), std::min(most, (reserved.capacity() - reserved.size()) * sizeof(T)));
 }
 
 /// Why a factor that takes `needed` bytes is not made when `available` are left; empty when it fits.

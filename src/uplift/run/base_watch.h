@@ -16,7 +16,7 @@ class BaseWatch {
  public:
   /// `b`: rows of all interfaces. What is seen is noted in `result`, which keeps its place.
   BaseWatch(const Model& model, const RunPlan& plan, const Sparse& b, RunResult& result);
-  /// Makes room in the record for so many steps [s].
+  /// Makes room in the record for this many steps of length `step` [s].
   void reserve(long steps, double step);
   /// Looks at a state; `radiation`: forces of the dashpots beside foundations, null: there are none.
   void look(const State& state, const Vector* radiation = nullptr);

@@ -30,6 +30,8 @@ long steps_of(const Stage& stage) {
 class Runner::March {
  public:
   March(Runner& runner, const Stage& stage, const Bulk& bulk);
+  March(const March&) = delete;  // the recorder refers to it
+  March& operator=(const March&) = delete;
   /// Every step, up to the end of the stage or of the run; false when the run ends here.
   bool go();
 
@@ -55,7 +57,7 @@ class Runner::March {
   const LinearCounts counts_;  // before the stage
   const long steps_, first_;   // of the stage; those that are done when it begins
   Stepper stepper_;
-  const State& state_;  // the stepper's, at the beginning of the stage
+  const State& state_;  // the stepper's present one: it is started, or goes on, here
   const ForceStage forces_;
   Recorder recorder_;
   EquilibriumCheck equilibrium_;
@@ -101,8 +103,8 @@ const State& Runner::March::start() {
     const Stage& before = runner_.plan_.stages[*run_.marched];
     return before.p_delta == stage_.p_delta && before.scheme == stage_.scheme;
   };
-  if (run_.ledger && !carries_on()) run_.ledger->acceleration = false;
-  stepper_.start(std::move(run_.state), run_.ledger ? &*run_.ledger : nullptr);
+  if (run_.handover && !carries_on()) run_.handover->acceleration = false;
+  stepper_.start(std::move(run_.state), run_.handover ? &*run_.handover : nullptr);
   return stepper_.state();
 }
 
@@ -121,14 +123,14 @@ void Runner::March::begin() {
   if (first_ > 0) return recorder_.resume(run_);
   run_.next_check = 1;
   begin_scales();
-  if (run_.ledger) return;  // the end of the stage before is there already
+  if (run_.handover) return;  // the end of the stage before is there already
   note(0);
   runner_.show(stage_, &stepper_, 0, false);
 }
 
 /// What the energy error of the dynamic stages is held against.
 void Runner::March::begin_scales() {
-  if (!run_.ledger) {
+  if (!run_.handover) {
     const Energies& energies = stepper_.energies();
     run_.initial_scale = energies.kinetic;
     run_.round_off_energy =
@@ -233,7 +235,7 @@ void Runner::March::end() {
   runner_.bases_.sum_up(stage_.step);
   run_.state = stepper_.whole_state();
   runner_.seen_ = &run_.state;
-  run_.ledger = stepper_.handover();
+  run_.handover = stepper_.handover();
   run_.marched = run_.stage;
   result_.counts.steps += counts.steps;
   result_.counts.retries += counts.retries;

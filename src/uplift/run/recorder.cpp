@@ -1,6 +1,7 @@
 #include "uplift/run/recorder.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -37,7 +38,7 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
   }
   for (std::vector<double>& column : result_.table) {
     column.reserve(column.size() + expected_rows + 2);
-    provide_pages(column);
+    provide_pages(column, most_provided / result_.table.size());
   }
   recent_.resize(plan.requests.size() * apart);
   for (const Request& request : plan.requests) {
@@ -116,7 +117,8 @@ Recorder::Source Recorder::source_of(const Request& request) const {
   }
   if (const EnergyQuantity* energy = find_energy_quantity(request.kind)) return {.place = &(energies_.*energy->of)};
   const InterfaceQuantity* quantity = find_interface_quantity(request.kind, model_.space.dimension);
-  if (quantity == nullptr || quantity->in_view == nullptr) return {.in_pose = quantity != nullptr ? quantity->in_pose : nullptr};
+  assert(quantity != nullptr);  // every other kind is in one of the tables
+  if (quantity->in_view == nullptr) return {.in_pose = quantity->in_pose};
   return {.place = quantity->in_view(views_[static_cast<std::size_t>(request.interface)])};
 }
 

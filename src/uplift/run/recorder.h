@@ -49,7 +49,7 @@ class Recorder {
     const Vector State::*vector = nullptr;  // an entry of this vector of the state times a factor
     int entry = 0;
     double factor = 0;
-    // both null: it is made from several numbers, a motion of the base (of it this one) or these of the free unknowns
+    // both null: it is made from several numbers, a motion of the base (in_pose), or free unknowns (terms)
     const Request* request = nullptr;
     double BasePose::*in_pose = nullptr;
     std::vector<std::pair<int, double>> terms = {};

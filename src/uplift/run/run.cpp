@@ -149,7 +149,7 @@ void Runner::run_stages() {
     }
     if (stage.p_delta && geometric_ == nullptr && !second_order()) return;
     if (rest_ != nullptr) release();
-    if (!run_.ledger && run_.step == 0 && keeping_.from == nullptr) {  // the first dynamic stage begins
+    if (!run_.handover && run_.step == 0 && keeping_.from == nullptr) {  // the first dynamic stage begins
       if (run_.stage > 0) bases_.note_rest(run_.state);
       add_initial_state();
       if (keeping_.begin) return keeping_.begin(run_);

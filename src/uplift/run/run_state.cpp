@@ -237,7 +237,7 @@ void list_parts(Archive& archive, T& r) {
 template <class Archive, SameAs<RunState> T>
 void list_parts(Archive& archive, T& run) {
   archive(run.stage, run.step, run.march);
-  archive(run.state, run.ledger, run.marched, run.held, run.second_order, run.static_energies, run.static_stages, run.unloaded_energy,
+  archive(run.state, run.handover, run.marched, run.held, run.second_order, run.static_energies, run.static_stages, run.unloaded_energy,
           run.initial_scale, run.round_off_energy);
   archive(run.result, run.load_steps, run.next_check, run.recorded_until, run.peak_frame, run.peak_uplift, run.linear);
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,7 +21,7 @@ struct RunState {
 
   // what a stage hands on to the next one
   State state;
-  std::optional<StageHandover> ledger;      // of the dynamic stages; empty before the first one
+  std::optional<StageHandover> handover;    // of the dynamic stages; empty before the first one
   std::optional<std::size_t> marched;       // the dynamic stage before, as long as nothing came in between
   Vector held;                              // what they have borne, on the free unknowns [N, N m]
   std::optional<SecondOrder> second_order;  // of P-delta, before elimination

@@ -19,6 +19,8 @@ class Runner {
  public:
   Runner(const Model& model, const RunPlan& plan, const std::vector<const Values*>& behaviours, const Watch& watch, const Observe& observe,
          const Keeping& keeping);
+  Runner(const Runner&) = delete;  // its parts refer to it
+  Runner& operator=(const Runner&) = delete;
   RunResult go();
 
  private:

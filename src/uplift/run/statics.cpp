@@ -27,7 +27,7 @@ std::vector<int> rotations_on_interfaces(const Model& model, const Sparse& b) {
 bool Runner::statics(const Stage& stage) {
   const Model& resting = rest_ != nullptr ? *rest_ : model_;
   const std::vector<int> rotations = rotations_on_interfaces(resting, rest_ != nullptr ? stack_interfaces(*rest_) : b_);
-  const Energies before = run_.ledger ? run_.ledger->energies : run_.static_energies;
+  const Energies before = run_.handover ? run_.handover->energies : run_.static_energies;
   Energies energies = before;
   Recorder recorder(resting, plan_, run_.state, energies, nullptr, bases_.views(), {resting, second_order_of(stage)}, stage.steps, 0,
                     run_.load_steps);
@@ -51,7 +51,7 @@ bool Runner::statics(const Stage& stage) {
     solved = stand_in_second_order(stage, before, energies) && bases_.moves_little(run_.state, resting, rotations, 1);
   ++run_.static_stages;
   run_.static_energies = energies;
-  if (run_.ledger) run_.result.final_energy = run_.ledger->energies = energies;
+  if (run_.handover) run_.result.final_energy = run_.handover->energies = energies;
   show(stage, nullptr, stage.steps, true);
   return solved;
 }
@@ -87,7 +87,7 @@ Energies Runner::static_energies(const Model& resting, const Energies& before, c
   InterfaceEnergy interfaces;
   interfaces.update(blocks_of(model_, *laws_).blocks, run_.state.opening, run_.state.history);
   energies.stored = interfaces.stored, energies.interface_dissipated = interfaces.dissipated + energies.friction;
-  if (run_.ledger)
+  if (run_.handover)
     energies.stop += before.sum() - energies.sum();
   else
     energies.residual = energies.sum() - run_.unloaded_energy;

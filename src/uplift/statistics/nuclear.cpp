@@ -41,6 +41,7 @@ double SeismicCapacity::probability(double a, double confidence) const {
   assert(a > 0 && confidence > 0 && confidence < 1);
   return lognormal_cdf(std::log(a / median) + beta_u * normal_quantile(confidence), beta_r);
 }
+
 OrRefused<SeismicCapacity> separation_of_variables(double reference, std::span<const SafetyFactor> factors) {
   if (!(reference > 0 && std::isfinite(reference))) return Refused{fmt::format("the reference {} is not a positive number", reference)};
   double log_median = std::log(reference), of_r = 0, of_u = 0;

@@ -106,6 +106,7 @@ class QuantityName {
     if (quantity_ == nullptr) throw "no number of the verdict has this name";
   }
   QuantityName(const VerdictQuantity& quantity) : quantity_(&quantity) {}
+  QuantityName(VerdictQuantity&&) = delete;
   constexpr operator const VerdictQuantity*() const { return quantity_; }
 
  private:

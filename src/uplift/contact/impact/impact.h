@@ -59,7 +59,7 @@ class ImpactRule {
   virtual void hold(const Impact&, Vector& /*acceleration*/, ImpactScratch&) const {}
 };
 
-/// The integrator's velocity is kept: the rule "none", and of models without an interface.
+/// The integrator's velocity is kept: the rule "none"; also for models without an interface.
 class NoImpact final : public ImpactRule {
  public:
   bool acts() const override { return false; }

@@ -6,7 +6,7 @@
 #include "unit/mesh/mesh_support.h"
 #include "uplift/mesh/convert.h"
 
-namespace uplift::box_test {
+namespace uplift::grid_test {
 namespace {
 
 using namespace support;
@@ -166,4 +166,4 @@ RC_GTEST_PROP(Lines, EveryStretchBoundsItsSurroundings, ()) {
 }
 
 }  // namespace
-}  // namespace uplift::box_test
+}  // namespace uplift::grid_test
