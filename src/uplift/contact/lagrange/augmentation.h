@@ -5,8 +5,6 @@
 
 namespace uplift {
 
-/// F_ii of every row [m/N]; returns the largest.
-double row_compliances(const ContactModel&, Vector& compliance);
 /// What a stiffness is scaled by: the compliance of a row, or of the whole interface (`largest`) where the row has none.
 inline double divisor(double compliance, double largest) {
   return compliance > 1e-12 * largest ? compliance : std::max(largest, 1e-300);

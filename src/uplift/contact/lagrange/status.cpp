@@ -30,11 +30,16 @@ void StatusStep::begin(const InterfaceProblem& problem, double gap_tolerance, In
 }
 
 void StatusStep::list_points() {
-  const double largest = row_compliances(*problem_->model, moved_);
+  const ContactModel& model = *problem_->model;
+  const Index rows = model.rows();
+  moved_.setZero();  // F_ii of every row
+  for (Index k = 0; k < model.factor.cols(); ++k)
+    for (Index i = 0; i < rows; ++i) moved_[i] += model.factor(i, k) * model.factor(i, k);
+  const double largest = rows > 0 ? moved_.maxCoeff() : 0;
   const auto rho = [&](Index row) { return 1 / divisor(moved_[row], largest); };
   points_.clear();
   Index index = 0;
-  for (const Block& block : problem_->model->blocks)
+  for (const Block& block : model.blocks)
     for (int i = 0; i < block.batch.points; ++i, ++index) {
       if (block.cone == nullptr) continue;
       FrictionPoint point;
