@@ -34,9 +34,9 @@ struct Scheme {
 /// with w = 1 - af, and for the path average, in the midpoint form with the filters of the scheme (b: gain, h_e = (1 + 2 b) dt),
 ///   R = (f0 + f1 - 2 K (u0 - b d_u) + (4/h_e) M (v0 - b d_v))/(1 + 2 b)
 struct StepWeights {
-  double mass = 0, damping = 0;  // K_eff = K + damping C + mass M
+  double mass = 0, damping = 0;  // K_eff = K + damping C + mass M [1/s2], [1/s]
   double share = 1;              // 1/(1 + 2 b)
-  double mass_velocity = 0, mass_acceleration = 0, damping_velocity = 0, damping_acceleration = 0;
+  double mass_velocity = 0, mass_acceleration = 0, damping_velocity = 0, damping_acceleration = 0;  // [1/s], 1, 1, [s]
 };
 StepWeights weights_of(const Scheme& scheme, double step);
 

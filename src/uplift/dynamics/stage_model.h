@@ -3,8 +3,8 @@
 
 namespace uplift {
 
-/// What a stage moves. All must stay alive.
-struct StageModel {  // of values that stay alive: no temporaries
+/// What a stage moves. It refers to values that must stay alive: no temporaries.
+struct StageModel {
   const Model& model;
   const Bulk& bulk;
   const Sparse& b;    // of all interfaces: rows x free

@@ -30,7 +30,7 @@ void give_back_free_memory();
 /// step. The contents stay as they are.
 void provide_pages(const void* begin, std::size_t bytes);
 
-/// At most this much of what a run records is mapped before its first step [bytes]: it may end early.
+/// At most this much of what a stage records is mapped before its first step [bytes], half of it of the table: a run may end early.
 inline constexpr std::size_t most_provided = 64 << 20;
 
 /// What a vector has reserved, at most so many bytes of it.

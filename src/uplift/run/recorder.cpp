@@ -38,7 +38,7 @@ Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, 
   }
   for (std::vector<double>& column : result_.table) {
     column.reserve(column.size() + expected_rows + 2);
-    provide_pages(column, most_provided / result_.table.size());
+    provide_pages(column, most_provided / 2 / result_.table.size());
   }
   recent_.resize(plan.requests.size() * apart);
   for (const Request& request : plan.requests) {

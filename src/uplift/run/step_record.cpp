@@ -37,8 +37,8 @@ void StepRecord::reserve(std::size_t interfaces, std::size_t count, std::size_t 
   }
   time.reserve(time.size() + count);
   instants.reserve(instants.size() + count * interfaces);
-  provide_pages(time, most_provided);
-  provide_pages(instants, most_provided);
+  provide_pages(time, most_provided / 4);
+  provide_pages(instants, most_provided / 4);
 }
 
 void StepRecord::add(double now, const std::vector<InterfaceView>& views, double gap_tolerance) {

@@ -2,8 +2,12 @@
 #include "uplift/linear/memory.h"
 
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -147,6 +151,38 @@ TEST(MemoryDeathTest, FactorThatDoesNotFitIsRefused) {
   boxes.stiffness += 1e9 * unit;
   EXPECT_EXIT(refuse(boxes), testing::ExitedWithCode(0), "");
 }
+
+#if defined(MADV_POPULATE_WRITE)
+/// Whole pages of new memory that the system has provided, and how many there are. mincore() is the system's own answer.
+std::pair<std::size_t, std::size_t> provided_pages(const double* begin, std::size_t bytes) {
+  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  const auto address = reinterpret_cast<std::uintptr_t>(begin);
+  const std::uintptr_t first = (address + page - 1) / page * page, last = (address + bytes) / page * page;
+  std::vector<unsigned char> there((last - first) / page);
+  EXPECT_EQ(mincore(reinterpret_cast<void*>(first), last - first, there.data()), 0);
+  return {static_cast<std::size_t>(std::ranges::count_if(there, [](unsigned char each) { return (each & 1) != 0; })), there.size()};
+}
+
+// What a vector has reserved is there before it is written to, up to the limit and no further; what it holds stays.
+TEST(Memory, PagesOfAReservedVectorAreProvided) {
+  constexpr std::size_t bytes = 64 << 20, most = 8 << 20;  // from the system, not from memory that was used before
+  std::vector<double> values;
+  values.reserve(bytes / sizeof(double));
+  values.assign({1.5, -2.5, 3.5});
+  const double* begin = values.data();
+  const auto [before, all] = provided_pages(begin, bytes);
+  ASSERT_LT(before, all / 8);
+  const std::size_t page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  provide_pages(values, most);
+  if (madvise(reinterpret_cast<void*>(reinterpret_cast<std::uintptr_t>(begin) / page * page), page, MADV_POPULATE_WRITE) != 0)
+    return;  // a system that is older than its headers: nothing was asked for that it could refuse
+  const auto [after, whole] = provided_pages(begin, most);
+  EXPECT_GE(after + 1, whole);
+  EXPECT_LT(provided_pages(begin, bytes).first, all / 2);
+  EXPECT_EQ(values, (std::vector<double>{1.5, -2.5, 3.5}));
+  EXPECT_EQ(values.data(), begin);
+}
+#endif
 
 }  // namespace
 }  // namespace uplift::memory_test
