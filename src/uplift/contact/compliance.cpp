@@ -80,7 +80,7 @@ void Spread::add(double scale, const Vector& z, Vector& x) const {
     through->add(scale, z, x);
     return;
   }
-  for (Index k = 0; k < spread.cols(); ++k) small::add(spread.rows(), scale * z[k], spread.data() + k * spread.rows(), x.data());
+  small::affine(spread, x.data(), z.data(), x.data(), scale);
 }
 
 Spread spread_through(const Factor& a, const Sparse& b) {

@@ -8,7 +8,6 @@
 #include "uplift/dynamics/split_response.h"
 #include "uplift/linear/large.h"
 #include "uplift/math/columns.h"
-#include "uplift/math/small_product.h"
 #include "uplift/math/upper_sum.h"
 #include "uplift/model/matrix_sum.h"
 #include "uplift/model/reduced.h"
@@ -34,32 +33,29 @@ Matrix full_of(const Matrix& matrix) {
   return full;
 }
 
-/// y = A x, A symmetric; that of a reduced model does not fit into the first cache.
-void multiply_full(const Matrix& a, const Vector& x, Vector& y) {
-  if (a.rows() > small_bulk)
-    small::multiply_symmetric(a, x.data(), y.data());
-  else
-    small::multiply(a, x.data(), y.data());
+/// A symmetric matrix of a reduced model does not fit into the first cache.
+small::Product product_of_full(const Matrix& a) {
+  return a.rows() > small_bulk ? small::multiply_symmetric : small::product_of(a);
 }
 
 }  // namespace
 
 BulkMatrix::BulkMatrix(const Sparse& matrix, bool dense)
     : zero_(matrix.nonZeros() == 0), sparse_(dense && !is_diagonal(matrix) ? nullptr : &matrix) {
-  if (sparse_ == nullptr) full_ = full_of(matrix);
+  if (zero_ || sparse_ != nullptr) return;
+  full_ = full_of(matrix);
+  product_ = product_of_full(full_);
 }
 
 BulkMatrix::BulkMatrix(std::vector<DistributedTerm> terms, const Sparse* here)
     : zero_(terms.empty() && here == nullptr), sparse_(here), terms_(std::move(terms)) {}
 
-void BulkMatrix::multiply(const Vector& x, Vector& y) const {
+void BulkMatrix::multiply_large(const Vector& x, Vector& y) const {
   if (!terms_.empty()) {
     terms_.front().matrix->multiply(terms_, x, y);
     if (sparse_ != nullptr) y.noalias() += sparse_->transpose() * x;
   } else if (zero_)
     y.setZero();
-  else if (sparse_ == nullptr)
-    multiply_full(full_, x, y);
   else
     y.noalias() = sparse_->transpose() * x;  // symmetric: by rows, which gathers instead of scattering
 }
@@ -149,7 +145,7 @@ void BulkFactor::factorise(const SymmetricSum& matrix, const Sparse* b, const Li
                            LinearCounts& counts, const BulkFactor* like) {
   if (matrix.rows() == 0) {  // every unknown is prescribed
     small_ = true;
-    inverse_.resize(0, 0);
+    product_ = small::product_of(inverse_);
     return;
   }
   if (!small_ && b != nullptr) last_ = touched_unknowns(*b);
@@ -170,7 +166,10 @@ void BulkFactor::factorise(const SymmetricSum& matrix, const Sparse* b, const Li
   if (small_) {
     factor_->solve(Matrix::Identity(matrix.rows(), matrix.rows()), inverse_);
     inverse_ = full_of(0.5 * (inverse_ + inverse_.transpose()));
-    if (matrix.there.empty() && is_diagonal(matrix.here)) inverse_diagonal_ = inverse_.diagonal();
+    if (matrix.there.empty() && is_diagonal(matrix.here))
+      inverse_diagonal_ = inverse_.diagonal();
+    else
+      product_ = product_of_full(inverse_);
   }
 }
 
@@ -221,13 +220,9 @@ void BulkFactor::fail(const Model& model, const SymmetricSum& matrix, int unknow
                      diagonal_range(matrix.diagonal(), model), too_much_contrast);
 }
 
-void BulkFactor::solve(const Vector& b, Vector& x, BulkWork& work) const {
+void BulkFactor::solve_large(const Vector& b, Vector& x, BulkWork& work) const {
   if (inverse_diagonal_.size() > 0) {
     x = inverse_diagonal_.cwiseProduct(b);
-    return;
-  }
-  if (small_) {
-    multiply_full(inverse_, b, x);
     return;
   }
   ++work.counts->back_solves;

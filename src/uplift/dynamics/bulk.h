@@ -6,6 +6,7 @@
 #include "uplift/contact/compliance.h"
 #include "uplift/contact/problem.h"
 #include "uplift/dynamics/scheme.h"
+#include "uplift/math/small_product.h"
 #include "uplift/math/symmetric_sum.h"
 #include "uplift/model/model.h"
 
@@ -30,12 +31,19 @@ class BulkMatrix {
   BulkMatrix(const Sparse& matrix, bool dense);
   BulkMatrix(std::vector<DistributedTerm> terms, const Sparse* here);
   /// y = A x; y must have the right size.
-  void multiply(const Vector& x, Vector& y) const;
+  void multiply(const Vector& x, Vector& y) const {
+    if (product_ != nullptr)
+      product_(full_, x.data(), y.data());
+    else
+      multiply_large(x, y);
+  }
   bool zero() const { return zero_; }
 
  private:
+  void multiply_large(const Vector& x, Vector& y) const;
   bool zero_ = true;
   Matrix full_;
+  small::Product product_ = nullptr;  // of the dense copy
   const Sparse* sparse_ = nullptr;  // null: dense
   std::vector<DistributedTerm> terms_;
 };
@@ -97,7 +105,12 @@ class BulkFactor {
   /// It does not fit into memory: a smaller step would not help.
   bool too_large() const { return too_large_; }
   /// x = A^-1 b
-  void solve(const Vector& b, Vector& x, BulkWork& work) const;
+  void solve(const Vector& b, Vector& x, BulkWork& work) const {
+    if (product_ != nullptr)
+      product_(inverse_, b.data(), x.data());
+    else
+      solve_large(b, x, work);
+  }
   /// The same for many columns, where the residual may be a share of the load (FactorWithReach); only where the factor has a reach.
   void solve(const Matrix& b, Matrix& x, double residual, LinearCounts& counts) const;
   /// Of the factor (FactorWithReach) [m]; 0 where the inverse is kept.
@@ -112,6 +125,7 @@ class BulkFactor {
   const std::vector<int>& last() const { return last_; }
 
  private:
+  void solve_large(const Vector& b, Vector& x, BulkWork& work) const;
   void factorise(const SymmetricSum& matrix, const Sparse* b, const LinearSolver& solver, const Model& model, LinearCounts& counts,
                  const BulkFactor* like);
   void factorise_split(const SymmetricSum& matrix, const LinearSolver& solver, const Model& model, LinearCounts& counts,
@@ -122,7 +136,8 @@ class BulkFactor {
   bool small_ = false, too_large_ = false;
   std::string why_;
   Matrix inverse_;
-  Vector inverse_diagonal_;  // where the inverse is a diagonal; else empty
+  small::Product product_ = nullptr;  // by the inverse
+  Vector inverse_diagonal_;           // where the inverse is a diagonal; else empty
   std::unique_ptr<const Factor> factor_;
   std::unique_ptr<const SplitFactor> split_;
   std::vector<int> last_;

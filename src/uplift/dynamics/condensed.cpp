@@ -5,7 +5,7 @@
 
 #include "uplift/math/columns.h"
 #include "uplift/math/dense.h"
-#include "uplift/math/small_product.h"
+#include "uplift/math/small.h"
 #include "uplift/model/base_size.h"
 
 namespace uplift {
@@ -102,6 +102,7 @@ void Condensed::list_touched(const Model& model, bool gap_moves) {
   Matrix touched_spread(spread_.cols(), spread_.cols());
   for (std::size_t j = 0; j < touched_.size(); ++j) touched_spread.row(static_cast<Eigen::Index>(j)) = spread_.row(touched_[j]);
   to_free_increment_ = inverse(touched_spread);
+  to_free_increment_product_ = small::product_of(to_free_increment_);
   if (to_free_increment_.allFinite())
     problem_.free_opening_increment.setZero(spread_.cols());
   else
@@ -129,7 +130,7 @@ void Condensed::free_opening(const Vector& right, const Vector& displacement) {
   }
   if (to_free_increment_.size() > 0) {
     for (std::size_t j = 0; j < touched_.size(); ++j) touched_value_[static_cast<Eigen::Index>(j)] = free_[touched_[j]];
-    small::multiply(to_free_increment_, touched_value_.data(), problem_.free_opening_increment.data());
+    to_free_increment_product_(to_free_increment_, touched_value_.data(), problem_.free_opening_increment.data());
   }
   for (std::size_t j = 0; j < touched_.size(); ++j)
     touched_value_[static_cast<Eigen::Index>(j)] = displacement[touched_[j]] + free_[touched_[j]];

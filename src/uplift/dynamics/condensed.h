@@ -91,6 +91,7 @@ class Condensed final : public StepSolver {
   Matrix spread_;             // X: du = du_free + X z; empty where B is full: du = A^-1 (R - B^T p)
   Matrix to_free_increment_;  // inverse of its touched rows where they are as many as its columns and few, and the gap stays: C = B X; else
                               // empty
+  small::Product to_free_increment_product_ = nullptr;
   InterfaceProblem problem_;
   InterfaceSolution solution_;
   const ContactMethod& method_;

@@ -14,6 +14,39 @@ void multiply_any(const Matrix& a, const double* x, double* y) {
 
 namespace {
 
+template <int columns>
+void affine_of(const Matrix& a, const double* b, const double* x, double* y, double factor) {
+  const double* column = a.data();
+  double scaled[columns];
+  for (int j = 0; j < columns; ++j) scaled[j] = factor * x[j];
+  with_size(a.rows(), [=](auto n) {
+#pragma omp simd
+    for (std::ptrdiff_t i = 0; i < n; ++i) {
+      double sum = b[i];
+      for (int j = 0; j < columns; ++j) sum += column[j * n + i] * scaled[j];
+      y[i] = sum;
+    }
+  });
+}
+
+}  // namespace
+
+void affine(const Matrix& a, const double* b, const double* x, double* y, double factor) {
+  switch (a.cols()) {
+    case 1:
+      return affine_of<1>(a, b, x, y, factor);
+    case 2:
+      return affine_of<2>(a, b, x, y, factor);
+    case 3:
+      return affine_of<3>(a, b, x, y, factor);
+    default:
+      if (y != b) std::copy_n(b, a.rows(), y);
+      for (std::ptrdiff_t j = 0; j < a.cols(); ++j) add(a.rows(), factor * x[j], a.data() + j * a.rows(), y);
+  }
+}
+
+namespace {
+
 /// What the columns from `first` on add to y = A x by their entries on and above the diagonal: a number is read once and used for its row
 /// and for its column.
 template <int columns>

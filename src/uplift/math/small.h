@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "uplift/math/lanes.h"
-#include "uplift/math/linalg.h"
+#include "uplift/math/small_product.h"
 
 // Kernels for the few unknowns of an interface under a rigid body and for small bulks: plain loops over contiguous columns that the
 // compiler turns into vector code; Eigen's general products cost more than the arithmetic at these sizes.
@@ -64,12 +64,6 @@ inline void add(std::ptrdiff_t n, double factor, const double* x, double* y) {
   for (std::ptrdiff_t i = 0; i < n; ++i) y[i] += factor * x[i];
 }
 
-/// y = A x of any size
-void multiply_any(const Matrix& a, const double* x, double* y);
-
-/// y = A x, A symmetric, of which the upper triangle is read: half of the traffic where the matrix does not fit into the first cache
-void multiply_symmetric(const Matrix& a, const double* x, double* y);
-
 /// y += A x
 inline void multiply_add(const Matrix& a, const double* x, double* y) {
   const std::ptrdiff_t n = a.rows(), m = a.cols();
@@ -77,34 +71,8 @@ inline void multiply_add(const Matrix& a, const double* x, double* y) {
   for (std::ptrdiff_t j = 0; j < m; ++j, column += n) add(n, x[j], column, y);
 }
 
-/// y = b + A x in one pass where A has few columns.
-inline void affine(const Matrix& a, const double* b, const double* x, double* y) {
-  const std::ptrdiff_t n = a.rows(), m = a.cols();
-  const double* c = a.data();
-  switch (m) {
-    case 1: {
-      const double x0 = x[0];
-#pragma omp simd
-      for (std::ptrdiff_t i = 0; i < n; ++i) y[i] = b[i] + c[i] * x0;
-      return;
-    }
-    case 2: {
-      const double x0 = x[0], x1 = x[1];
-#pragma omp simd
-      for (std::ptrdiff_t i = 0; i < n; ++i) y[i] = b[i] + c[i] * x0 + c[n + i] * x1;
-      return;
-    }
-    case 3: {
-      const double x0 = x[0], x1 = x[1], x2 = x[2];
-#pragma omp simd
-      for (std::ptrdiff_t i = 0; i < n; ++i) y[i] = b[i] + c[i] * x0 + c[n + i] * x1 + c[2 * n + i] * x2;
-      return;
-    }
-    default:
-      for (std::ptrdiff_t i = 0; i < n; ++i) y[i] = b[i];
-      multiply_add(a, x, y);
-  }
-}
+/// y = b + factor A x, in one pass where A has few columns; y may be b.
+void affine(const Matrix& a, const double* b, const double* x, double* y, double factor = 1);
 
 /// y += A^T x for n rows of m columns, `stride` apart. R: their number where the compiler shall know it (one pass), else 0.
 template <int R>
