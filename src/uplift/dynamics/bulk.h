@@ -44,7 +44,7 @@ class BulkMatrix {
   bool zero_ = true;
   Matrix full_;
   small::Product product_ = nullptr;  // of the dense copy
-  const Sparse* sparse_ = nullptr;  // null: dense
+  const Sparse* sparse_ = nullptr;    // null: dense
   std::vector<DistributedTerm> terms_;
 };
 

@@ -52,23 +52,27 @@ inline constexpr std::ptrdiff_t lanes = Lanes::size();
   return mask ? a : b;
 }
 
-/// The numbers of an array from `first` on that fill one register.
+/// The numbers of an array from `first` on that fill one register; they may be small integers of one byte.
 struct WholeLanes {
   std::ptrdiff_t first;
   [[gnu::always_inline]] Lanes operator()(const double* x, double = 0) const { return {x + first, std::experimental::element_aligned}; }
+  [[gnu::always_inline]] Lanes operator()(const char* x) const { return {x + first, std::experimental::element_aligned}; }
   [[gnu::always_inline]] void put(double* y, Lanes value) const { value.copy_to(y + first, std::experimental::element_aligned); }
+  [[gnu::always_inline]] void put(char* y, Lanes value) const { value.copy_to(y + first, std::experimental::element_aligned); }
 };
 
 /// The last numbers, which do not fill a register: zeros follow them, or the value `beyond`.
 struct LastLanes {
   std::ptrdiff_t first, count;
-  [[gnu::always_inline]] Lanes operator()(const double* x, double beyond = 0) const {
+  template <class Number>
+  [[gnu::always_inline]] Lanes operator()(const Number* x, double beyond = 0) const {
     alignas(64) double rest[lanes];
     for (std::ptrdiff_t k = 0; k < lanes; ++k) rest[k] = k < count ? x[first + k] : beyond;
     return {rest, std::experimental::vector_aligned};
   }
-  [[gnu::always_inline]] void put(double* y, Lanes value) const {
-    for (std::ptrdiff_t k = 0; k < count; ++k) y[first + k] = value[static_cast<std::size_t>(k)];
+  template <class Number>
+  [[gnu::always_inline]] void put(Number* y, Lanes value) const {
+    for (std::ptrdiff_t k = 0; k < count; ++k) y[first + k] = static_cast<Number>(value[static_cast<std::size_t>(k)]);
   }
 };
 

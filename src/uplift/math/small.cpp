@@ -15,7 +15,7 @@ void multiply_any(const Matrix& a, const double* x, double* y) {
 namespace {
 
 template <int columns>
-void affine_of(const Matrix& a, const double* b, const double* x, double* y, double factor) {
+[[gnu::noinline]] void affine_of(const Matrix& a, const double* b, const double* x, double* y, double factor) {
   const double* column = a.data();
   double scaled[columns];
   for (int j = 0; j < columns; ++j) scaled[j] = factor * x[j];
@@ -29,6 +29,11 @@ void affine_of(const Matrix& a, const double* b, const double* x, double* y, dou
   });
 }
 
+[[gnu::noinline]] void affine_of_many(const Matrix& a, const double* b, const double* x, double* y, double factor) {
+  if (y != b) std::copy_n(b, a.rows(), y);
+  for (std::ptrdiff_t j = 0; j < a.cols(); ++j) add(a.rows(), factor * x[j], a.data() + j * a.rows(), y);
+}
+
 }  // namespace
 
 void affine(const Matrix& a, const double* b, const double* x, double* y, double factor) {
@@ -40,8 +45,7 @@ void affine(const Matrix& a, const double* b, const double* x, double* y, double
     case 3:
       return affine_of<3>(a, b, x, y, factor);
     default:
-      if (y != b) std::copy_n(b, a.rows(), y);
-      for (std::ptrdiff_t j = 0; j < a.cols(); ++j) add(a.rows(), factor * x[j], a.data() + j * a.rows(), y);
+      return affine_of_many(a, b, x, y, factor);
   }
 }
 

@@ -55,7 +55,8 @@ inline double sum_of_squares(std::ptrdiff_t n, const double* a) {
 
 /// A few numbers: for them the library's copy costs more than the copying.
 inline void copy(std::ptrdiff_t n, const double* from, double* to) {
-  for_lanes(n, [=](const auto& at) { at.put(to, at(from)); });
+  for_lanes(
+      n, [=](const auto& at) __attribute__((always_inline)) { at.put(to, at(from)); });
 }
 
 /// y += factor * x

@@ -125,13 +125,14 @@ KernelReply solve_rows(const Rows& rows, double* held, double* z, double* openin
     for (std::ptrdiff_t i = 0; i < rows.count; ++i)
       if (!(rows.limit[i] > 0)) held[i] = rows.fixed[i];
   if (rows.count == 0 || rows.columns == 0) return nothing_moves(rows, held, z, opening, force);
-  const KernelReply first = rows.columns <= 3 ? small_active_set(rows, held, z, opening, force, scratch)
-                                              : general_active_set(rows, held, z, opening, force, scratch);
-  if (first.end != KernelEnd::stuck) return first;
-  KernelReply second = dual_active_set(rows, held, z, opening, force, scratch);
-  second.iterations += first.iterations;
-  second.cycles += first.cycles;
-  return second;
+  KernelReply reply = rows.columns <= 3 ? small_active_set(rows, held, z, opening, force, scratch)
+                                        : general_active_set(rows, held, z, opening, force, scratch);
+  if (reply.end != KernelEnd::stuck) return reply;
+  const int iterations = reply.iterations, cycles = reply.cycles;
+  reply = dual_active_set(rows, held, z, opening, force, scratch);
+  reply.iterations += iterations;
+  reply.cycles += cycles;
+  return reply;
 }
 
 }  // namespace uplift

@@ -16,6 +16,7 @@ bool Visited::note(std::ptrdiff_t rows, const double* held) {
   for (std::ptrdiff_t first = 0; first < rows; first += 64) {
     const std::ptrdiff_t some = std::min<std::ptrdiff_t>(64, rows - first);
     std::uint64_t flags = 0;
+#pragma omp simd simdlen(8) reduction(| : flags)
     for (std::ptrdiff_t i = 0; i < some; ++i) flags |= static_cast<std::uint64_t>(held[first + i] > 0) << i;
     value = (value ^ flags) * 1099511628211ull;
     value ^= value >> 32;
@@ -60,18 +61,20 @@ struct Sums {
 };
 
 template <int R>
-void gather(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride, const double* held, const double* target, Sums<R>& sums) {
+[[gnu::always_inline]] inline void gather(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride, const double* held,
+                                          const double* target, Sums<R>& sums) {
   Lanes gram[packed<R>] = {}, right[R] = {}, weight = 0, square = 0;
-  for_lanes(n, [&](const auto& at) {
-    const Lanes h = at(held), t = at(target);
-    for (int s = 0, entry = 0; s < R; ++s) {
-      const Lanes weighted = h * at(c + s * stride);
-      right[s] += weighted * t;
-      for (int r = s; r < R; ++r, ++entry) gram[entry] += weighted * at(c + r * stride);
-    }
-    weight += h;
-    square += t * t;
-  });
+  for_lanes(
+      n, [&](const auto& at) __attribute__((always_inline)) {
+        const Lanes h = at(held), t = at(target);
+        for (int s = 0, entry = 0; s < R; ++s) {
+          const Lanes weighted = h * at(c + s * stride);
+          right[s] += weighted * t;
+          for (int r = s; r < R; ++r, ++entry) gram[entry] += weighted * at(c + r * stride);
+        }
+        weight += h;
+        square += t * t;
+      });
   for (int k = 0; k < packed<R>; ++k) sums.gram[k] = sum(gram[k]);
   for (int r = 0; r < R; ++r) sums.right[r] = -sum(right[r]);
   sums.weight = sum(weight);
@@ -87,29 +90,32 @@ struct Look {
 /// when it penetrates, or when it touches and the pressure field of the closed rows is compressive there (this makes the redundant
 /// pressures those of least norm).
 template <int R>
-Look look(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride, const double* held, const double* limit, const double* target,
-          const double* z, const double* y, double gap, double weight, double work, double* opening, double* force, double* next) {
+[[gnu::always_inline]] inline Look look(std::ptrdiff_t n, const double* c, std::ptrdiff_t stride, const double* held, const double* limit,
+                                        const double* target, const double* z, const double* y, double gap, double weight, double work,
+                                        double* opening, double* force, double* next) {
   const double pull = std::sqrt(1e-24 * std::max(work, 0.0) / weight);  // a pressure beyond 1e-12 of the mean one is noticed
   const Lanes zero = 0;
-  Lanes closed = zero;
+  Lanes closed = zero, of_opening[R], of_force[R];
+  for (int r = 0; r < R; ++r) of_opening[r] = z[r], of_force[r] = y[r];
   LaneMask changes(false);
-  for_lanes(n, [&](const auto& at) {
-    Lanes o = at(target), f = zero;
-    for (int r = 0; r < R; ++r) {
-      const Lanes column = at(c + r * stride);
-      o += column * z[r], f += column * y[r];
-    }
-    const Lanes h = at(held), most = at(limit);
-    const LaneMask may = most > zero, is_held = h > zero;
-    const Lanes kept = choose(f > pull, zero, most), touching = choose(f < -pull, most, zero);
-    const Lanes taken = choose(o < -gap, most, choose(o <= gap, touching, zero));
-    const Lanes now = choose(may, choose(is_held, kept, taken), h);
-    at.put(opening, o);
-    at.put(force, h * choose(may && f > zero, zero, f));
-    at.put(next, now);
-    closed = larger(closed, choose(is_held, absolute(o), zero));
-    changes = changes || now != h;
-  });
+  for_lanes(
+      n, [&](const auto& at) __attribute__((always_inline)) {
+        Lanes o = at(target), f = zero;
+        for (int r = 0; r < R; ++r) {
+          const Lanes column = at(c + r * stride);
+          o += column * of_opening[r], f += column * of_force[r];
+        }
+        const Lanes h = at(held), most = at(limit);
+        const LaneMask may = most > zero, is_held = h > zero;
+        const Lanes kept = choose(f > pull, zero, most), touching = choose(f < -pull, most, zero);
+        const Lanes taken = choose(o < -gap, most, choose(o <= gap, touching, zero));
+        const Lanes now = choose(may, choose(is_held, kept, taken), h);
+        at.put(opening, o);
+        at.put(force, h * choose(may && f > zero, zero, f));
+        at.put(next, now);
+        closed = larger(closed, choose(is_held, absolute(o), zero));
+        changes = changes || now != h;
+      });
   return {largest(closed), any(changes)};
 }
 
@@ -145,6 +151,7 @@ double solve_dual(const double* gram, const double* inverse, const double* z, do
 template <int R>
 KernelReply active_set(const Rows& rows, double* held, double* z, double* opening, double* force, KernelScratch& scratch) {
   const std::ptrdiff_t n = rows.count;
+  if (scratch.next.size() < n) scratch.next.setZero(n);
   double* next = scratch.next.data();
   KernelReply reply;
   Sums<R> sums;
@@ -257,7 +264,6 @@ template int pseudo_inverse<2>(const double*, double*);
 template int pseudo_inverse<3>(const double*, double*);
 
 KernelReply small_active_set(const Rows& rows, double* held, double* z, double* opening, double* force, KernelScratch& scratch) {
-  if (scratch.next.size() < rows.count) scratch.next.setZero(rows.count);
   if (rows.columns == 1) return active_set<1>(rows, held, z, opening, force, scratch);
   if (rows.columns == 2) return active_set<2>(rows, held, z, opening, force, scratch);
   return active_set<3>(rows, held, z, opening, force, scratch);

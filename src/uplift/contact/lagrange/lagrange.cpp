@@ -63,16 +63,17 @@ class LagrangeMethod final : public ContactMethod {
     const std::ptrdiff_t n = block.batch.points, first = block.normal_row(), rows = problem.rows();
     const double* area = block.area.data();
     double* held = work.held.data();
-    Status* status = solution.status.data();
-#pragma omp simd
-    for (std::ptrdiff_t i = 0; i < n; ++i) held[i] = status[i] != Status::open ? area[i] : 0.0;
+    const Lanes zero = 0;
+    char* status = reinterpret_cast<char*>(solution.status.data());
+    for_lanes(n, [&](const auto& at) { at.put(held, choose(at(status) != zero, at(area), zero)); });
     const Rows view{
         n,       problem.model->factor.cols(),   rows, problem.model->factor.data() + first, problem.free_opening.data() + first, area,
         nullptr, options_.gap_of(*problem.model)};
     const KernelReply reply =
         solve_rows(view, held, solution.z.data(), solution.opening.data() + first, solution.force.data() + first, work.kernel);
     if (reply.iterations > 1)
-      for (std::ptrdiff_t i = 0; i < n; ++i) status[i] = held[i] > 0 ? Status::slip : Status::open;
+      for_lanes(n,
+                [&, slip = Lanes(static_cast<int>(Status::slip))](const auto& at) { at.put(status, choose(at(held) > zero, slip, zero)); });
     for (int c = 0; c + 1 < block.batch.components; ++c) {  // tractionless tangentially
       const std::ptrdiff_t row = block.first + c * n;
       double* opening = solution.opening.data() + row;
