@@ -52,7 +52,8 @@ class ImpactRule {
   virtual bool force_includes_impulse() const { return false; }
   /// True when `hold` corrects the acceleration.
   virtual bool holds_acceleration() const { return false; }
-  /// Corrects the velocity of the free unknowns in place. `impulse` (rows, N s, compression negative) receives what the correction put in.
+  /// Corrects the velocity of the free unknowns in place. To `impulse` (rows, N s, compression negative) it adds what the correction put
+  /// in; empty: that is not asked for.
   virtual void apply(const Impact&, Vector& velocity, Vector& impulse, ImpactScratch&) const = 0;
   /// After `apply`: corrects the acceleration, which must balance the forces at the corrected velocity. The scratch then holds the force
   /// that belongs to it, and the impulse of the velocity.

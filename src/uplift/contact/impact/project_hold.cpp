@@ -11,7 +11,7 @@ class ProjectHold final : public ImpactRule {
     project_rate(impact, velocity, impact.moved_velocity, impact.velocity_weight, Select::all, scratch);
     correct(impact, 1, velocity, scratch);
     add_impulse(impact, 1, impulse, scratch);
-    scratch.total = scratch.impulse;
+    scratch.total.swap(scratch.impulse);
   }
   void hold(const Impact& impact, Vector& acceleration, ImpactScratch& scratch) const override {
     if (scratch.count == 0) return;

@@ -32,6 +32,51 @@ void multiply(const Matrix& a, Index first, Index n, const double* x, double* y)
   for (; k < columns; ++k, column += rows) small::add(n, x[k], column, y);
 }
 
+/// push = weight C^T taken, target = B v + s + C push, for R columns of C and a full B, on the range of active rows.
+template <int R>
+void form_targets(const Impact& impact, const Vector& v, const Vector* moved, double weight, ImpactScratch& scratch) {
+  const Index first = scratch.first, n = scratch.count, stride = impact.b->rows();
+  const double *b = impact.b->data() + first, *c = impact.mass->factor.data() + first, *taken = scratch.taken.data() + first;
+  const double *rate = v.data(), *more = moved != nullptr ? moved->data() + first : nullptr;
+  double* target = scratch.target.data() + first;
+  Lanes sums[R] = {}, push[R];
+  Index whole = 0;  // numbers in registers
+  for (; whole + lanes <= n; whole += lanes)
+    for (int r = 0; r < R; ++r) sums[r] += WholeLanes{whole}(c + r * stride) * WholeLanes{whole}(taken);
+  for (int r = 0; r < R; ++r) {
+    double total = sum(sums[r]);
+    for (Index i = whole; i < n; ++i) total += c[r * stride + i] * taken[i];
+    push[r] = scratch.push[r] = weight * total;
+  }
+  small::with_size(impact.b->cols(), [&](auto columns) {
+    for_lanes(
+        n, [&](const auto& at) __attribute__((always_inline)) {
+          Lanes total = 0;
+          const double* column = b;
+          Index k = 0;
+          for (; k + 4 <= columns; k += 4, column += 4 * stride)
+            total += (at(column) * rate[k] + at(column + stride) * rate[k + 1]) +
+                     (at(column + 2 * stride) * rate[k + 2] + at(column + 3 * stride) * rate[k + 3]);
+          for (; k < columns; ++k, column += stride) total += at(column) * rate[k];
+          if (more != nullptr) total += at(more);
+          for (int r = 0; r < R; ++r) total += at(c + r * stride) * push[r];
+          at.put(target, total);
+        });
+  });
+}
+
+/// The same for any B and C.
+void form_targets_in_general(const Impact& impact, const Vector& v, const Vector* moved, double weight, ImpactScratch& scratch) {
+  const Matrix& c = impact.mass->factor;
+  const Index first = scratch.first, n = scratch.count;
+  row_rates(impact, v, moved, first, n, scratch.target);
+  for (Index k = 0; k < c.cols(); ++k) {
+    const double* column = c.data() + k * c.rows() + first;
+    scratch.push[k] = weight * small::dot(n, column, scratch.taken.data() + first);
+    small::add(n, scratch.push[k], column, scratch.target.data() + first);
+  }
+}
+
 constexpr double at_rest = 1e-12;  // rate that counts as zero, relative to the rates of the rows
 
 }  // namespace
@@ -53,14 +98,15 @@ bool select_rows(const Impact& impact, Hold hold, ImpactScratch& scratch) {
   double* taken = scratch.taken.data();
   const Lanes zero = 0;
   Index least = rows, most = -1;  // groups of lanes
-  for_lanes(rows, [&](const auto& at) {
-    const Lanes here = at(pressed);
-    const LaneMask active = here > zero;
-    at.put(weight, here);
-    at.put(other, zero);
-    at.put(taken, take ? choose(active, at(force), zero) : zero);
-    if (any(active)) least = std::min(least, at.first), most = at.first;
-  });
+  for_lanes(
+      rows, [&](const auto& at) __attribute__((always_inline)) {
+        const Lanes here = at(pressed);
+        const LaneMask active = here > zero;
+        at.put(weight, here);
+        at.put(other, zero);
+        at.put(taken, take ? choose(active, at(force), zero) : zero);
+        if (any(active)) least = std::min(least, at.first), most = at.first;
+      });
   scratch.count = 0;
   if (most < 0) return false;
   for (const int row : impact.tangents) {
@@ -87,9 +133,15 @@ void project_rate(const Impact& impact, const Vector& rate, const Vector* moved,
 #pragma omp simd
     for (Index i = 0; i < n; ++i) limit[i] = before[i] > 1e3 * at_rest * largest ? 0 : limit[i];
   }
-  row_rates(impact, rate, moved, first, n, scratch.target);
-  for (Index k = 0; k < r; ++k) scratch.push[k] = weight * small::dot(n, c.data() + k * c.rows() + first, scratch.taken.data() + first);
-  for (Index k = 0; k < r; ++k) small::add(n, scratch.push[k], c.data() + k * c.rows() + first, target);
+  const bool full = impact.b != nullptr;
+  if (full && r == 1)
+    form_targets<1>(impact, rate, moved, weight, scratch);
+  else if (full && r == 2)
+    form_targets<2>(impact, rate, moved, weight, scratch);
+  else if (full && r == 3)
+    form_targets<3>(impact, rate, moved, weight, scratch);
+  else
+    form_targets_in_general(impact, rate, moved, weight, scratch);
   Rows rows{n, r, c.rows(), c.data() + first, target, limit, scratch.any_fixed ? scratch.fixed.data() + first : nullptr, 0, at_rest};
   for (;;) {
     small::copy(n, limit, scratch.held.data() + first);
@@ -112,6 +164,7 @@ void correct(const Impact& impact, double factor, Vector& rate, ImpactScratch& s
 void add_impulse(const Impact& impact, double factor, Vector& impulse, const ImpactScratch& scratch) {
   const double *total = scratch.impulse.data(), *taken = scratch.taken.data(), weight = impact.velocity_weight;
   double* sum = impulse.data();
+  if (impulse.size() == 0) return;
 #pragma omp simd
   for (Index i = scratch.first; i < scratch.first + scratch.count; ++i) sum[i] += factor * (total[i] - weight * taken[i]);
 }

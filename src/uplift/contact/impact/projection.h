@@ -32,7 +32,7 @@ bool select_rows(const Impact&, Hold, ImpactScratch&);
 void project_rate(const Impact&, const Vector& rate, const Vector* moved, double weight, Select, ImpactScratch&);
 /// rate += factor * X (push + y); uses up the push.
 void correct(const Impact&, double factor, Vector& rate, ImpactScratch&);
-/// impulse += factor * (total impulse - weight p): what the correction itself put in.
+/// impulse += factor * (total impulse - weight p): what the correction itself put in. Where it is empty, nothing is asked for.
 void add_impulse(const Impact&, double factor, Vector& impulse, const ImpactScratch&);
 /// result = B v + s, on a range of rows at least.
 void row_rates(const Impact&, const Vector& v, const Vector* moved, Index first, Index count, Vector& result);
