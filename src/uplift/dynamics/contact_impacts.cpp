@@ -10,9 +10,16 @@ namespace uplift {
 
 ContactImpacts::ContactImpacts(const ImpactRule& rule, const Scheme& scheme, const Bulk& bulk, ContactRows rows,
                                const std::vector<Block>& blocks, Forces forces, LinearCounts& counts)
-    : rule_(rule), scheme_(scheme), bulk_(bulk), rows_(std::move(rows)), forces_(std::move(forces)), work_(counts) {
-  for (Vector* of_rows : {&transferred_, &correction_, &friction_.rates}) of_rows->setZero(rows_.b.rows());
-  for (Vector* unknowns : {&lag_, &load_, &response_}) unknowns->setZero(bulk.unknowns);
+    : rule_(rule),
+      scheme_(scheme),
+      passive_(scheme.average_acceleration() && rule.holds_acceleration()),
+      bulk_(bulk),
+      rows_(std::move(rows)),
+      forces_(std::move(forces)),
+      work_(counts) {
+  for (Vector* of_rows : {&transferred_, &friction_.rates}) of_rows->setZero(rows_.b.rows());
+  if (rule.force_includes_impulse() || rows_.motion.acts()) correction_.setZero(rows_.b.rows());
+  for (Vector* unknowns : {&lag_, &load_, &response_, &free_velocity_}) unknowns->setZero(bulk.unknowns);
   if (rule.holds_acceleration() && any_friction(blocks)) coulomb_ = std::make_unique<CoulombRates>(blocks, rows_.mass.factor);
 }
 
@@ -51,15 +58,14 @@ void ContactImpacts::accept() {
 /// Work that the pressures of constraints take from the motion in the step, (w_0 p_0 + w_1 p_1) dg. It is zero where a point stays closed;
 /// where a gap closes it is the part of the impact's loss that the projection of the velocity does not see, where one opens a little is
 /// given back. The sum with the projection does not depend on the step (docs/theory, section 5).
-double ContactImpacts::contact_work(const std::vector<Block>& blocks, const State& begin, const Vector& end_force,
-                                    const Vector& end_opening) const {
+double ContactImpacts::contact_work(const std::vector<Block>& blocks, const State& begin, const InterfaceSolution& end) const {
   const double of_end = scheme_.end_share(), of_begin = 1 - of_end;
   double work = 0;
   for (const Block& block : blocks) {
     if (block.cone == nullptr) continue;
     const int normal = block.first + block.batch.normal();
-    const double *force = begin.force.data() + normal, *next_force = end_force.data() + normal, *opening = begin.opening.data() + normal,
-                 *next_opening = end_opening.data() + normal;
+    const double *force = begin.force.data() + normal, *next_force = end.force.data() + normal, *opening = begin.opening.data() + normal,
+                 *next_opening = end.opening.data() + normal;
 #pragma omp simd reduction(+ : work)
     for (int i = 0; i < block.batch.points; ++i) work += (of_begin * force[i] + of_end * next_force[i]) * (next_opening[i] - opening[i]);
   }
@@ -72,7 +78,7 @@ void ContactImpacts::apply(SolvedStep& step) {
   // pressure and friction act together: what one gives while the other takes more is no energy that contact has given
   const double given = std::max(0.0, std::min({taken - step.energies.impact, -step.energies.impact, step.friction}));
   step.friction -= given, step.energies.impact += given;
-  step.end.mean_force = step.end.force;
+  small::copy(step.end.force.size(), step.end.force.data(), step.end.mean_force.data());
   if (rule_.force_includes_impulse()) step.end.mean_force += correction_ / step.factors.step;
 }
 
@@ -81,10 +87,10 @@ void ContactImpacts::apply(SolvedStep& step) {
 void ContactImpacts::strike(SolvedStep& step) {
   State& end = step.end;
   const auto kinetic = [&] { return 0.5 * small::dot(end.velocity.size(), end.velocity.data(), step.momentum.data()); };
-  transferred_.setZero();
-  correction_.setZero();
   next_kick_.step = 0;
-  step.energies.impact += contact_work(step.blocks, step.begin, end.force, end.opening);
+  closing_ = false;
+  if (correction_.size() > 0) correction_.setZero();
+  step.energies.impact += step.contact_work;
   if (!rows_.select_pressed(step.blocks, end.force)) return;
   Impact data = rows_.impact(end.force);
   data.dynamic = step.factors.dynamic.get();
@@ -92,8 +98,9 @@ void ContactImpacts::strike(SolvedStep& step) {
   data.velocity_weight = scheme_.velocity_weight(data.step);
   data.acceleration_weight = (1 - scheme_.alpha_f) / (1 - scheme_.alpha_m);
   const double before = kinetic();
-  free_velocity_ = end.velocity;
+  std::copy_n(end.velocity.data(), end.velocity.size(), free_velocity_.data());
   closing_ = gap_closes(step.begin);
+  if (closing_) transferred_.setZero();
   const bool with_friction = apply_rule(step, data);
   bulk_.mass.multiply(end.velocity, step.momentum);
   step.energies.impact += before - kinetic();
@@ -108,10 +115,9 @@ void ContactImpacts::strike(SolvedStep& step) {
 /// Whether a row that is pressed at the end of the step was open at its beginning.
 bool ContactImpacts::gap_closes(const State& begin) const {
   const double *pressed = rows_.pressed.data(), *opening = begin.opening.data(), gap = rows_.closed_gap;
-  int closing = 0;
-#pragma omp simd reduction(+ : closing)
-  for (Eigen::Index i = 0; i < rows_.pressed.size(); ++i) closing += static_cast<int>(pressed[i] > 0) & static_cast<int>(opening[i] > gap);
-  return closing > 0;
+  LaneMask closing(false);
+  for_lanes(rows_.pressed.size(), [&](const auto& at) { closing = closing || (at(pressed) > Lanes(0) && at(opening) > gap); });
+  return any(closing);
 }
 
 /// Velocity and acceleration by the rule of the case: impulses spread with the damping force that they change. Where a point with friction
@@ -167,7 +173,8 @@ void ContactImpacts::damp_impact(const SolvedStep& step, const Vector& velocity,
 /// grows as 1/dt, and the rest is reported as an impulse [N s].
 void ContactImpacts::separate_impulse(SolvedStep& step, const Impact& data) {
   constexpr double round_off = 1e-9;
-  if (!closing_ && !(scratch_.push.squaredNorm() > round_off * round_off * scratch_.y.squaredNorm())) return;
+  const auto square = [](const Vector& v) { return small::sum_of_squares(v.size(), v.data()); };
+  if (!closing_ && !(square(scratch_.push) > round_off * round_off * square(scratch_.y))) return;
   read_forces(step, data, closing_ || rows_.motion.acts());  // on a moving support the force of a held point works
   if (!closing_) return;
   for (const Block& block : step.blocks) {

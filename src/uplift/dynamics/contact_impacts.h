@@ -37,7 +37,8 @@ struct SolvedStep {
   State& end;
   Vector& momentum;  // M v at the end
   Energies& energies;
-  double friction;  // J: work of the friction of constraints in the step
+  double friction;      // J: work of the friction of constraints in the step
+  double contact_work;  // J: of their pressures, see ContactImpacts
 };
 
 /// Impacts of constraints at the end of a step, with friction where points are open, and what they ask of the step after (docs/theory,
@@ -59,9 +60,11 @@ class ContactImpacts {
   void begin_step(State& begin, double step);
   /// Work of what the beginning then lacks in equilibrium, which belongs to the impact [J].
   double lag_work(const Vector& increment) const;
-  /// Takes forces out of the beginning of a step that would create energy; `scale`: of energies [J]. True when there are any: the step is
-  /// solved again.
-  bool drop_creating(const std::vector<Block>& blocks, State& begin, const InterfaceSolution& end, const Energies& energies, double scale);
+  double contact_work(const std::vector<Block>& blocks, const State& begin, const InterfaceSolution& end) const;
+  /// Takes forces out of the beginning of a step that would create energy; `of_pressures`: contact_work of the step, `scale`: of energies
+  /// [J]. True when there are any: the step is solved again.
+  bool drop_creating(const std::vector<Block>& blocks, State& begin, const InterfaceSolution& end, const Energies& energies,
+                     double of_pressures, double scale);
   /// Puts these forces back.
   void restore_dropped(State& begin);
   /// Takes back what begin_step did: a step that has failed leaves its beginning as it was.
@@ -70,11 +73,10 @@ class ContactImpacts {
   void apply(SolvedStep& step);
   /// The step was taken.
   void accept();
-  /// Momentum that impacts transferred in the step, per interface row [N s], compression < 0.
-  const Vector& transferred() const { return transferred_; }
+  /// Momentum that impacts transferred in the step, per interface row [N s], compression < 0; null where no gap has closed.
+  const Vector* transferred() const { return closing_ ? &transferred_ : nullptr; }
 
  private:
-  double contact_work(const std::vector<Block>& blocks, const State& begin, const Vector& end_force, const Vector& end_opening) const;
   void strike(SolvedStep& step);
   bool gap_closes(const State& begin) const;
   bool apply_rule(SolvedStep& step, Impact& data);
@@ -93,13 +95,15 @@ class ContactImpacts {
 
   const ImpactRule& rule_;
   const Scheme scheme_;
+  const bool passive_;  // forces of the beginning of a step shall create no energy
   const Bulk& bulk_;
   ContactRows rows_;
   const Forces forces_;
   BulkWork work_;
   ImpactScratch scratch_;
   std::unique_ptr<CoulombRates> coulomb_;  // null without friction, and with other rules than project_hold
-  Vector transferred_, correction_;        // rows [N s]: correction_ is what the rule added to the impulses that the step contains
+  Vector transferred_;                     // rows [N s]: where a gap closes
+  Vector correction_;                      // rows [N s]: what the rule added to the impulses that the step contains; empty: not needed
   bool closing_ = false;                   // a gap closes in the step
   Kick kick_, next_kick_;                  // of impacts at the beginning and at the end of the step
   Kick unkicked_;                          // acceleration and force of the beginning without it

@@ -19,10 +19,13 @@ ContactRows::ContactRows(const Model& model, const Bulk& bulk, const Sparse& row
 }
 
 bool ContactRows::select_pressed(const std::vector<Block>& blocks, const Vector& forces) {
-  const double nothing = 1e-12 * forces.cwiseAbs().maxCoeff();
+  Lanes sizes = 0;
+  for_lanes(
+      forces.size(),
+      [&, all = forces.data() ](const auto& at) __attribute__((always_inline)) { sizes = larger(sizes, absolute(at(all))); });
+  const double nothing = 1e-12 * largest(sizes);
   const bool constrained = std::ranges::any_of(blocks, [](const Block& block) { return block.cone != nullptr; });
   bool any_pressed = false;
-  pressed.setZero(forces.size());
   tangents.clear();
   for (const Block& block : blocks) {
     if (constrained && block.cone == nullptr) continue;  // a law beside constraints gives way
@@ -30,11 +33,12 @@ bool ContactRows::select_pressed(const std::vector<Block>& blocks, const Vector&
     const double *force = forces.data() + normal, *weight_of = area.data() + normal;
     double* weight = pressed.data() + normal;
     LaneMask some(false);
-    for_lanes(n, [&](const auto& at) {
-      const LaneMask pushes = -at(force) > nothing;
-      at.put(weight, choose(pushes, at(weight_of), Lanes(0)));
-      some = some || pushes;
-    });
+    for_lanes(
+        n, [&](const auto& at) __attribute__((always_inline)) {
+          const LaneMask pushes = -at(force) > nothing;
+          at.put(weight, choose(pushes, at(weight_of), Lanes(0)));
+          some = some || pushes;
+        });
     any_pressed = any_pressed || any(some);
     const double friction = block.cone != nullptr ? block.cone->friction() : 0;
     if (!(friction > 0)) continue;

@@ -23,7 +23,7 @@ struct ContactRows {
   Matrix dense_b;            // empty when large
   Vector area;               // m2, of the point that a row belongs to
   double closed_gap = 1e-9;  // m: what closes from a smaller gap is no impact
-  Vector pressed;            // area of the normal rows that are pressed, else 0 [m2]
+  Vector pressed;            // area of the normal rows that are pressed, else 0 [m2]; of rows that cannot be it stays 0
   std::vector<int> tangents;
 };
 

@@ -92,14 +92,14 @@ double friction_given(const std::vector<Block>& blocks, const State& begin, cons
 /// one that has turned round. With friction wherever some point is open or the balance would show energy that friction has given; without
 /// where the contact would give back more than it has ever taken. True when there are any.
 bool ContactImpacts::drop_creating(const std::vector<Block>& blocks, State& begin, const InterfaceSolution& end, const Energies& energies,
-                                   double scale) {
-  if (!scheme_.average_acceleration() || !rule_.holds_acceleration()) return false;
+                                   double of_pressures, double scale) {
+  if (!passive_) return false;
   const double round_off = owed * scale, closed_gap = rows_.closed_gap;
   const bool slips =
       coulomb_ != nullptr && (dropped_.slip || (moves(begin.opening, end.opening, closed_gap) &&
                                                 (lifted(blocks, begin, end.force, end.opening, closed_gap) ||
                                                  energies.residual + friction_given(blocks, begin, end, closed_gap) > round_off)));
-  const bool owes = energies.impact + contact_work(blocks, begin, end.force, end.opening) < -round_off;
+  const bool owes = energies.impact + of_pressures < -round_off;
   if (!slips && !owes) return false;
   const double nothing = 1e-15 * scale;
   Vector& taken = friction_.taken;
@@ -190,7 +190,8 @@ bool ContactImpacts::impact_of_friction(SolvedStep& step, const Impact& data) {
   if (soft) soften(step, now.after);
   if (!obey_friction(step, soft ? *damped : rows_.mass, soft ? *step.factors.coulomb : *coulomb_, data, now.velocity, now.after))
     return false;
-  end.velocity = now.velocity, end.acceleration = now.after, correction_ = now.change;
+  end.velocity = now.velocity, end.acceleration = now.after;
+  if (correction_.size() > 0) correction_ = now.change;
   if (!closing_) return true;
   now.velocity += step.begin.velocity;
   row_rates(data, now.velocity, data.moved_velocity, 0, end.force.size(), now.rates);

@@ -188,7 +188,10 @@ void Stepper::right_hand_side(const StepSize& size) {
     }
   });
   stage_.bulk.mass.multiply(work_, work2_);
-  right_ += work2_;
+  small::with_size(n, [=, inertia = work2_.data()](auto count) {
+#pragma omp simd
+    for (Eigen::Index i = 0; i < count; ++i) right[i] += inertia[i];
+  });
   if (!stage_.bulk.damping.zero()) {
     for (Eigen::Index i = 0; i < n; ++i)
       work_[i] = size.weights.damping_velocity * now_.velocity[i] + size.weights.damping_acceleration * now_.acceleration[i];
@@ -263,8 +266,10 @@ bool Stepper::balance_step(StepSize& size) {
     counts_.iterations += outcome.iterations;
     counts_.cycles += outcome.cycles;
     if (outcome.converged) {
-      if (impacts_ == nullptr || !impacts_->drop_creating(last_->model->blocks, now_, *solution_, energies_,
-                                                          std::max(largest_external_, std::abs(initial_energy_))))
+      if (impacts_ == nullptr) return true;
+      contact_work_ = impacts_->contact_work(last_->model->blocks, now_, *solution_);
+      if (!impacts_->drop_creating(last_->model->blocks, now_, *solution_, energies_, contact_work_,
+                                   std::max(largest_external_, std::abs(initial_energy_))))
         return true;
       if (reductions == 0) first_try_.increment = increment_, first_try_.plastic = plastic_next_, first_try_.solution = *solution_;
       if (reductions < most_reductions) continue;
@@ -272,8 +277,9 @@ bool Stepper::balance_step(StepSize& size) {
     why_ = outcome.converged ? fmt::format("forces at the beginning of the step give energy back after {} reductions", most_reductions)
                              : outcome.why;
     if (reductions == 0 || size.step > smallest_share * options_.step) return false;
-    if (impacts_ != nullptr) impacts_->restore_dropped(now_);
     increment_ = first_try_.increment, plastic_next_ = first_try_.plastic, solution_ = &first_try_.solution;
+    impacts_->restore_dropped(now_);  // only impacts drop forces
+    contact_work_ = impacts_->contact_work(last_->model->blocks, now_, *solution_);
     return true;
   }
 }
@@ -325,7 +331,7 @@ bool Stepper::try_step(StepSize& size) {
     // what moving supports put in through the interfaces, by the forces that moved the step
     if (motion_.acts()) energies_.external += (1 - end) * now_.force.dot(motion_.change()) + end * next_.force.dot(motion_.change());
     if (impacts_ != nullptr) {
-      SolvedStep step{size.impacts, last_->model->blocks, now_, next_, momentum_end(), energies_, friction};
+      SolvedStep step{size.impacts, last_->model->blocks, now_, next_, momentum_end(), energies_, friction, contact_work_};
       impacts_->apply(step);
       energies_.friction += step.friction;
     } else {

@@ -141,6 +141,7 @@ class Stepper {
   std::string why_;
   const InterfaceProblem* last_ = nullptr;
   const InterfaceSolution* solution_ = nullptr;  // of the same solver, or first_try_'s
+  double contact_work_ = 0;                      // J: of pressures of constraints in that solution, with impacts
   struct {                                       // with all forces of the beginning, while a solution without some of them is sought
     Vector increment;
     PlasticState plastic;

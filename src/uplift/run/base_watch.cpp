@@ -65,8 +65,8 @@ void BaseWatch::note(const Stepper& stepper) {
 
 /// Momentum that impacts of constraints transferred in the last step, of each interface.
 void BaseWatch::note_impulses(const Stepper& stepper) {
-  if (stepper.impacts() == nullptr) return;
-  const Vector& impulse = stepper.impacts()->transferred();
+  if (stepper.impacts() == nullptr || stepper.impacts()->transferred() == nullptr) return;
+  const Vector& impulse = *stepper.impacts()->transferred();
   Index first = 0;
   for (std::size_t k = 0; k < model_.interfaces.size(); ++k) {
     const Batch& batch = model_.interfaces[k].batch;
