@@ -97,19 +97,17 @@ void Condensed::list_touched(const Model& model, bool gap_moves) {
   for (std::size_t j = 0; j < touched_.size(); ++j)
     for (Sparse::InnerIterator entry(b_, touched_[j]); entry; ++entry)
       touched_b_(entry.row(), static_cast<Eigen::Index>(j)) = entry.value();
-  touched_value_.setZero(static_cast<Eigen::Index>(touched_.size()));
+  for (Vector* touched : {&touched_value_, &touched_free_}) touched->setZero(std::ssize(touched_));
   if (gap_moves || spread_.cols() > 3 || spread_.cols() != touched_value_.size()) return;
   Matrix touched_spread(spread_.cols(), spread_.cols());
   for (std::size_t j = 0; j < touched_.size(); ++j) touched_spread.row(static_cast<Eigen::Index>(j)) = spread_.row(touched_[j]);
   to_free_increment_ = inverse(touched_spread);
+  if (!to_free_increment_.allFinite()) return;
   to_free_increment_product_ = small::product_of(to_free_increment_);
-  if (to_free_increment_.allFinite())
-    problem_.free_opening_increment.setZero(spread_.cols());
-  else
-    to_free_increment_.resize(0, 0);
+  problem_.free_opening_increment.setZero(spread_.cols());
 }
 
-void Condensed::free_opening(const Vector& right, const Vector& displacement) {
+inline void Condensed::free_opening(const Vector& right, const Vector& displacement) {
   if (split_ != nullptr) {
     problem_.free_opening.noalias() = b_ * displacement;
     problem_.free_opening += gap_;
@@ -128,12 +126,13 @@ void Condensed::free_opening(const Vector& right, const Vector& displacement) {
     }
     return;
   }
-  if (to_free_increment_.size() > 0) {
-    for (std::size_t j = 0; j < touched_.size(); ++j) touched_value_[static_cast<Eigen::Index>(j)] = free_[touched_[j]];
-    to_free_increment_product_(to_free_increment_, touched_value_.data(), problem_.free_opening_increment.data());
+  Index j = 0;
+  for (const int unknown : touched_) {
+    touched_free_[j] = free_[unknown];
+    touched_value_[j++] = displacement[unknown] + free_[unknown];
   }
-  for (std::size_t j = 0; j < touched_.size(); ++j)
-    touched_value_[static_cast<Eigen::Index>(j)] = displacement[touched_[j]] + free_[touched_[j]];
+  if (to_free_increment_product_ != nullptr)
+    to_free_increment_product_(to_free_increment_, touched_free_.data(), problem_.free_opening_increment.data());
   small::affine(touched_b_, gap_.data(), touched_value_.data(), problem_.free_opening.data());
 }
 
@@ -176,16 +175,22 @@ Vector guess_of_foundations(const InterfaceProblem& problem) {
 
 }  // namespace
 
-Outcome Condensed::contact_step(const Vector& right, const StepStart& start, Vector& increment) {
+inline Outcome Condensed::contact_step(const Vector& right, const StepStart& start, Vector& increment) {
   small::copy(start.opening.size(), start.opening.data(), problem_.from.data());
   small::copy(start.history.size(), start.history.data(), problem_.old.data());
   if (start.filter != nullptr && start.filter != &problem_.filter) problem_.filter = *start.filter;
   if (solution_.z.size() == 0) solution_.z = guess_of_foundations(problem_);
-  Outcome outcome = solve_interfaces(right, start.displacement, increment);
+  Outcome outcome =
+      solved_ == nullptr ? solve_interfaces(right, start.displacement, increment) : solve_by_reach(right, start.displacement, increment);
   const InterfaceSystems solved = std::exchange(solution_.systems, {});
   work_.counts->systems.factored += solved.factored;
   work_.counts->systems.iterated += solved.iterated;
   return outcome;
+}
+
+/// Through a factor with a reach.
+Outcome Condensed::solve_by_reach(const Vector& right, const Vector& displacement, Vector& increment) {
+  return solved_->solve(right, gap_ + b_ * displacement, method_, *method_work_, problem_, solution_, increment);
 }
 
 /// du = A^-1 (R - B^T p)
@@ -197,7 +202,7 @@ void Condensed::respond_to_forces(const Vector& right, Vector& increment) {
 }
 
 /// du = du_free + X z
-void Condensed::add_spread(Vector& increment) const {
+inline void Condensed::add_spread(Vector& increment) const {
   constexpr Index few_columns = 12;
   if (spread_.cols() <= few_columns) return small::affine(spread_, free_.data(), solution_.z.data(), increment.data());
   increment = free_;
@@ -205,11 +210,7 @@ void Condensed::add_spread(Vector& increment) const {
 }
 
 /// The interface problem, and the displacement that follows from it.
-Outcome Condensed::solve_interfaces(const Vector& right, const Vector& displacement, Vector& increment) {
-  if (solved_ != nullptr) {
-    const Vector opening = gap_ + b_ * displacement;
-    return solved_->solve(right, opening, method_, *method_work_, problem_, solution_, increment);
-  }
+inline Outcome Condensed::solve_interfaces(const Vector& right, const Vector& displacement, Vector& increment) {
   free_opening(right, displacement);
   Outcome outcome = method_.solve(problem_, *method_work_, solution_);
   if (!outcome.converged) return outcome;

@@ -74,6 +74,7 @@ class Condensed final : public StepSolver {
   void list_touched(const Model& model, bool gap_moves);
   void free_opening(const Vector& right, const Vector& displacement);
   Outcome solve_interfaces(const Vector& right, const Vector& displacement, Vector& increment);
+  Outcome solve_by_reach(const Vector& right, const Vector& displacement, Vector& increment);
   void add_spread(Vector& increment) const;
   void respond_to_forces(const Vector& right, Vector& increment);
   Outcome free_step(const Vector& right, Vector& increment);
@@ -89,14 +90,13 @@ class Condensed final : public StepSolver {
   std::vector<int> touched_;
   Matrix full_b_;             // B where it is full and A^-1 is kept, of a reduced model, with rows of zeros (whole_registers); else empty
   Matrix spread_;             // X: du = du_free + X z; empty where B is full: du = A^-1 (R - B^T p)
-  Matrix to_free_increment_;  // inverse of its touched rows where they are as many as its columns and few, and the gap stays: C = B X; else
-                              // empty
-  small::Product to_free_increment_product_ = nullptr;
+  Matrix to_free_increment_;  // inverse of its touched rows where they are as many as its columns and few, and the gap stays: C = B X
+  small::Product to_free_increment_product_ = nullptr;  // null: not so
   InterfaceProblem problem_;
   InterfaceSolution solution_;
   const ContactMethod& method_;
   std::unique_ptr<MethodWork> method_work_;
-  Vector free_, touched_value_, of_rows_, loaded_;
+  Vector free_, touched_value_, touched_free_, of_rows_, loaded_;
 };
 
 }  // namespace uplift

@@ -84,7 +84,7 @@ void ContactImpacts::apply(SolvedStep& step) {
 
 /// Velocity, acceleration and contact force of a step are corrected by the rule of impact, for the points that are pressed at its end. The
 /// force stays the one that the acceleration at the end contains.
-void ContactImpacts::strike(SolvedStep& step) {
+inline void ContactImpacts::strike(SolvedStep& step) {
   State& end = step.end;
   const auto kinetic = [&] { return 0.5 * small::dot(end.velocity.size(), end.velocity.data(), step.momentum.data()); };
   next_kick_.step = 0;
@@ -113,7 +113,7 @@ void ContactImpacts::strike(SolvedStep& step) {
 }
 
 /// Whether a row that is pressed at the end of the step was open at its beginning.
-bool ContactImpacts::gap_closes(const State& begin) const {
+inline bool ContactImpacts::gap_closes(const State& begin) const {
   const double *pressed = rows_.pressed.data(), *opening = begin.opening.data(), gap = rows_.closed_gap;
   LaneMask closing(false);
   for_lanes(rows_.pressed.size(), [&](const auto& at) { closing = closing || (at(pressed) > Lanes(0) && at(opening) > gap); });
@@ -122,7 +122,7 @@ bool ContactImpacts::gap_closes(const State& begin) const {
 
 /// Velocity and acceleration by the rule of the case: impulses spread with the damping force that they change. Where a point with friction
 /// is open, friction belongs to the impulse (true); elsewhere sliding points slide on, and the rule alone is exact.
-bool ContactImpacts::apply_rule(SolvedStep& step, Impact& data) {
+inline bool ContactImpacts::apply_rule(SolvedStep& step, Impact& data) {
   if (wants_friction(step, data) && impact_of_friction(step, data)) return true;
   const Spread* damped = step.factors.damped.get();
   if (damped != nullptr) data.mass = damped;
@@ -171,7 +171,7 @@ void ContactImpacts::damp_impact(const SolvedStep& step, const Vector& velocity,
 /// The force that balances the accelerations after the impact is that of the contact: it is reported, and the next step begins with it. In
 /// a step in which a gap closes, the force of the displacement solve contains the momentum that the impact transfers, over the step: it
 /// grows as 1/dt, and the rest is reported as an impulse [N s].
-void ContactImpacts::separate_impulse(SolvedStep& step, const Impact& data) {
+inline void ContactImpacts::separate_impulse(SolvedStep& step, const Impact& data) {
   constexpr double round_off = 1e-9;
   const auto square = [](const Vector& v) { return small::sum_of_squares(v.size(), v.data()); };
   if (!closing_ && !(square(scratch_.push) > round_off * round_off * square(scratch_.y))) return;

@@ -75,7 +75,7 @@ const Accelerator& Stepper::accelerator() const {
 }
 
 /// The displacement increment: by the linear step, or by the outer Newton around it.
-Outcome Stepper::solve(StepSize& size) {
+inline Outcome Stepper::solve(StepSize& size) {
   StepSolver* last = size.solver.get();
   StepStart start{now_.displacement, now_.opening, now_.history};
   if (joint_filter_ != nullptr) {
@@ -149,7 +149,7 @@ void Stepper::products(const Vector& u, const Vector& v, Vector& ku, Vector& mv)
   stage_.bulk.mass.multiply(v, mv);
 }
 
-void Stepper::right_hand_side(const StepSize& size) {
+inline void Stepper::right_hand_side(const StepSize& size) {
   const double* f0 = force_now_.data();
   const double* f1 = force_next_.data();
   const double* ku = stiff_now_.data();
@@ -205,7 +205,7 @@ void Stepper::right_hand_side(const StepSize& size) {
 }
 
 /// Displacement, velocity and acceleration at the end of the step; false when they are not finite.
-bool Stepper::kinematics(const StepSize& size) {
+inline bool Stepper::kinematics(const StepSize& size) {
   const double dt = size.step;
   const Scheme& s = options_.scheme;
   const double* du = increment_.data();
@@ -257,7 +257,7 @@ bool Stepper::kinematics(const StepSize& size) {
 
 /// The displacement at the end of the step. Forces at its beginning that would create energy are left out, as far as there is a solution
 /// without them.
-bool Stepper::balance_step(StepSize& size) {
+inline bool Stepper::balance_step(StepSize& size) {
   for (int reductions = 0;; ++reductions) {
     right_hand_side(size);
     if (sizes_.shift().size() > 0)
@@ -284,7 +284,7 @@ bool Stepper::balance_step(StepSize& size) {
   }
 }
 
-bool Stepper::try_step(StepSize& size) {
+inline bool Stepper::try_step(StepSize& size) {
   if (!mass_failure_.empty() || !size.why.empty()) {
     why_ = mass_failure_.empty() ? size.why : "the mass matrix: " + mass_failure_;
     return false;

@@ -64,7 +64,7 @@ void BaseWatch::note(const Stepper& stepper) {
 }
 
 /// Momentum that impacts of constraints transferred in the last step, of each interface.
-void BaseWatch::note_impulses(const Stepper& stepper) {
+inline void BaseWatch::note_impulses(const Stepper& stepper) {
   if (stepper.impacts() == nullptr || stepper.impacts()->transferred() == nullptr) return;
   const Vector& impulse = *stepper.impacts()->transferred();
   Index first = 0;

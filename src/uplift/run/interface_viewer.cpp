@@ -294,17 +294,18 @@ void InterfaceViewer::look_at_points(const Layout& layout, const State& state, I
   const double tolerance = tolerance_;
   const Lanes zero = 0;
   Lanes axials = zero, moments = zero, slopes = zero, open = zero, widest = zero, traction = zero, pull = zero, least = gap[0];
-  for_lanes(n, [&](const auto& at) {
-    const Lanes force = at(p);
-    axials += force;
-    moments += at(along) * force;
-    slopes += at(slope) * at(opening);
-    open += choose(at(gap) > tolerance, at(area), zero);
-    widest = larger(widest, at(gap));
-    least = smaller(least, at(gap, gap[0]));
-    traction = smaller(traction, force * at(inverse));
-    pull = larger(pull, force);
-  });
+  for_lanes(
+      n, [&](const auto& at) __attribute__((always_inline)) {
+        const Lanes force = at(p);
+        axials += force;
+        moments += at(along) * force;
+        slopes += at(slope) * at(opening);
+        open += choose(at(gap) > tolerance, at(area), zero);
+        widest = larger(widest, at(gap));
+        least = smaller(least, at(gap, gap[0]));
+        traction = smaller(traction, force * at(inverse));
+        pull = larger(pull, force);
+      });
   const bool pulls = any(pull > zero);
   const double axial = sum(axials);
   double moment = sum(moments), shear = 0;
@@ -340,7 +341,7 @@ void InterfaceViewer::look_at_points(const Layout& layout, const State& state, I
 }
 
 void InterfaceViewer::look(const State& state, std::vector<InterfaceView>& views, const Vector* radiation) {
-  if (views.size() != layouts_.size()) views.resize(layouts_.size());
+  if (views.empty()) views.resize(layouts_.size());
   InterfaceView* view = views.data();
   for (const Layout& layout : layouts_) {
     if (layout.footing != nullptr)

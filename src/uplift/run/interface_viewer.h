@@ -31,8 +31,8 @@ class InterfaceViewer {
   /// `bases`: nodes of the upper side of every interface, `facets`: the surface of each; either may be empty.
   InterfaceViewer(const Model& model, double gap_tolerance, const std::vector<std::vector<int>>& bases = {},
                   const std::vector<std::shared_ptr<const Facets>>& facets = {});
-  /// Forces are the means over the step, gaps those at its end. `radiation`: forces of the dashpots beside foundations at the same rows;
-  /// null: there are none.
+  /// Forces are the means over the step, gaps those at its end. `views`: of all interfaces, or empty. `radiation`: forces of the dashpots
+  /// beside foundations at the same rows; null: there are none.
   void look(const State& state, std::vector<InterfaceView>& views, const Vector* radiation = nullptr);
   /// How an interface stands; `view` is what look() saw of it.
   BasePose pose(const State& state, std::size_t interface, const InterfaceView& view) const;

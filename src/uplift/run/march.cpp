@@ -142,7 +142,7 @@ void Runner::March::begin_scales() {
 }
 
 /// One step; false when the run ends with it.
-bool Runner::March::advance(long step) {
+inline bool Runner::March::advance(long step) {
   constexpr long checks = 4;  // of the equilibrium in a stage
   if (!stepper_.advance()) {
     runner_.fail(fmt::format("step at t = {:.6g} s failed down to dt = {:.3g} s: {}", state_.time, stepper_.failed_step(), stepper_.why()),
@@ -163,7 +163,7 @@ bool Runner::March::advance(long step) {
   return goes_on;
 }
 
-void Runner::March::note(long step) {
+inline void Runner::March::note(long step) {
   runner_.bases_.note(stepper_);
   recorder_.record(step % runner_.plan_.every == 0 || step == steps_);
   if (picture_every_ > 0) recorder_.note_uplift(runner_.bases_.uplifted());
@@ -174,7 +174,7 @@ void Runner::March::note(long step) {
 /// largest external work, or the energy at the beginning where no load works. Work of the dead loads over 1e-10 m (of which the gate takes
 /// a hundredth), and 1e-8 of the energy that the static state stores, are round-off: a structure that only stands there has created
 /// nothing, though friction under constraints knows its forces to 1e-9 alone.
-void Runner::March::finish_energy() {
+inline void Runner::March::finish_energy() {
   const Energies& energies = stepper_.energies();
   const double created = energies.residual + std::max(0.0, -energies.impact);
   note_largest(created, state_.time, result_.energy_created, result_.energy_created_time);
@@ -186,7 +186,7 @@ void Runner::March::finish_energy() {
 }
 
 /// False when the run ends here: not finite, far beyond the energy limit, or moved beyond the small-displacement model.
-bool Runner::March::within_limits() {
+inline bool Runner::March::within_limits() {
   const Energies& energies = stepper_.energies();
   if (!std::isfinite(energies.residual) || !std::isfinite(energies.kinetic)) {
     runner_.fail(fmt::format("the energy is not finite at t = {:.6g} s", state_.time), stepper_.problem());

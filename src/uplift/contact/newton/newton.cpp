@@ -402,10 +402,12 @@ Outcome solve_in_general(const InterfaceProblem& problem, const AugmentedForce& 
 Outcome solve_by_newton(const InterfaceProblem& problem, const AugmentedForce& augmented, const NewtonOptions& options, NewtonWork& work,
                         InterfaceSolution& solution) {
   Outcome outcome;
-  if (may_sweep(problem, work, solution) && solve_by_sweeps(problem, options, work, solution, outcome)) return outcome;
-  size_newton(problem, work, solution);
-  solution.fused = false;
-  return solve_in_general(problem, augmented, options, outcome.iterations, work, solution);
+  if (!may_sweep(problem, work, solution) || !solve_by_sweeps(problem, options, work, solution, outcome)) {
+    size_newton(problem, work, solution);
+    solution.fused = false;
+    outcome = solve_in_general(problem, augmented, options, outcome.iterations, work, solution);
+  }
+  return outcome;
 }
 
 }  // namespace uplift
