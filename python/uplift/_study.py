@@ -149,8 +149,8 @@ class _StatusLine:
 
 
 class LimitFit(Record):
-    """What a study says of a limit state: its table of study.json, with `capacities`, `stripes`, `dispersion`, `tornado`, and, where the plan
-    or the method gives them, `performance` (design motion), `risk` (hazard curve) and `fractiles` (curves of a search).
+    """What a study says of a limit state: its table of study.json, with `capacities`, `stripes`, `dispersion`, `capacity`, `tornado`, and, where the
+    plan or the method gives them, `performance` (design motion), `risk` (hazard curve), `bootstrap` and `fractiles` (curves of a search).
 
     Intensities are in the unit of the study's intensity. The figures are those without the runs of unknown outcome; the attributes
     `unknown_survived` and `unknown_exceeded` are the fits with these runs counted one way and the other.

@@ -248,6 +248,37 @@ class Study(StudyTest):
                              ("intensities = [1.5, 1.5000001]\nrates = [1e-3, 1e-4]", "; no annual rate (")):
             self.study(IDA + "[hazard]\n" + points + "\n")
             self.assertIn(part, self.uplift("study", "fit", name).stdout)
+        # factors of safety and a bootstrap: nothing is run again
+        factors = (
+            '[[factor]]\nname = "anchors"\nmedian = 1.2\nbeta_r = 0.1\nbeta_u = 0.2\nsource = "tests"\n'
+            '[[factor]]\nname = "shape"\nbeta_u = 0.15\n[design]\nintensity = 0.9\n')
+        self.study(IDA.replace("[intensity]", "bootstrap = 4000\n[intensity]") + factors)
+        said = self.uplift("study", "fit", name).stdout
+        study = json.loads((self.folder / name / "study.json").read_text())
+        self.assert_valid(study, "study")
+        self.assertEqual([factor["name"] for factor in study["factors"]], ["anchors", "shape"])
+        self.assertEqual(study["curves"], before["curves"])
+        (with_factors,) = study["limits"]
+        capacity, beta_r, beta_u = with_factors["capacity"], math.hypot(beta, 0.1), math.hypot(0.2, 0.15)
+        for key, expected in (("median", 1.2 * theta), ("beta_r", beta_r), ("beta_u", beta_u), ("beta_c", math.hypot(beta_r, beta_u)),
+                              ("hclpf", 1.2 * theta * math.exp(-1.65 * (beta_r + beta_u))),
+                              ("hclpf_composite", 1.2 * theta * math.exp(-2.326 * math.hypot(beta_r, beta_u)))):
+            self.assertAlmostEqual(capacity[key] / expected, 1, delta=1e-9)
+        at_design = 0.5 * math.erfc(-math.log(0.9 / capacity["median"]) / capacity["beta_c"] / math.sqrt(2))
+        self.assertAlmostEqual(with_factors["performance"]["composite"]["at_design"] / at_design, 1, delta=1e-9)
+        self.assertIn("with the factors of safety", said)
+        self.assertIn(f"HCLPF {capacity['hclpf']:.3g} g_n", said)
+        # ln theta of four capacities of a normal sample scatters by beta/2, and beta^2 by chi^2 with 3 degrees of freedom
+        bootstrap = with_factors["bootstrap"]
+        self.assertEqual((bootstrap["draws"], bootstrap["refused"]), (4000, 0))
+        self.assertAlmostEqual(bootstrap["se_log_theta"] / (beta / 2), 1, delta=0.04)
+        for end, quantile in (("lower", 0.351846), ("upper", 7.814728)):
+            self.assertAlmostEqual(bootstrap["beta_interval"][end] / (beta * math.sqrt(quantile / 3)), 1, delta=0.05)
+        self.assertAlmostEqual(math.log(bootstrap["theta_interval"]["upper"] / theta) / (1.644854 * beta / 2), 1, delta=0.06)
+        with open(self.folder / name / "fits.csv", newline="") as file:
+            (row,) = csv.DictReader(file)
+        self.assertEqual([float(row["HCLPF [g_n]"]), float(row["theta bootstrap upper [g_n]"])],
+                         [capacity["hclpf"], bootstrap["theta_interval"]["upper"]])
         # fractiles of four curves at the limit: straight between the runs on both sides of it
         crossing = []
         for curve in study["curves"]:
@@ -357,6 +388,11 @@ class Study(StudyTest):
             ('case = "../case.toml"', 'case = "../cas.toml"', "expected a case file"),
             ('case = "../case.toml"', 'case = "../case.toml"\nsamples = 3', "expected [[variable]] tables"),
             ("[[limit]]", "[design]\nintensity = 0\n[[limit]]", "design.intensity: expected"),
+            ("[[limit]]", '[[factor]]\nname = "a"\nmedian = 0\n[[limit]]', "factor[0].median: expected"),
+            ("[[limit]]", '[[factor]]\nname = "a"\nbeta_u = -0.1\n[[limit]]', "factor[0].beta_u: expected"),
+            ("[[limit]]", '[[factor]]\nname = "a"\n[[limit]]', "found a factor that changes nothing"),
+            ("[[limit]]", '[[factor]]\nname = "a"\nbeta_u = 0.1\n[[factor]]\nname = "a"\nbeta_u = 0.2\n[[limit]]', '"a"'),
+            ('case = "../case.toml"', 'case = "../case.toml"\nbootstrap = 10', "expected 0 or at least 200 draws"),
             ("[[limit]]", "[hazard]\nintensities = [1]\nrates = [1e-3]\n[[limit]]", "expected two intensities at least"),
             ("[[limit]]", "[hazard]\nintensities = [1, 2]\nrates = [1e-3]\n[[limit]]", "expected a rate for each of the 2 intensities, found 1"),
             ("[[limit]]", "[hazard]\nintensities = [2, 1]\nrates = [2e-3, 1e-3]\n[[limit]]", "expected ascending numbers, found 1 after 2"),

@@ -69,8 +69,10 @@ export interface Limit {
   fit: FullFit;
   unknown_survived: Fit;
   unknown_exceeded: Fit;
+  capacity: { known: boolean; reason: string; median?: number; beta_r?: number; beta_u?: number; beta_c?: number; hclpf?: number; hclpf_composite?: number };
+  bootstrap?: { known: boolean; reason: string; draws?: number; theta_interval?: Interval; beta_interval?: Interval };
   dispersion: { known: boolean; reason: string; median?: number; beta_r?: number; beta_u?: number; hclpf?: number };
-  performance?: Pair & { at_design_interval: Interval; at_one_and_a_half_interval: Interval; met?: boolean; unknown_survived: Pair; unknown_exceeded: Pair };
+  performance?: Pair & { at_design_interval: Interval; at_one_and_a_half_interval: Interval; met?: boolean; unknown_survived: Pair; unknown_exceeded: Pair; composite: Pair };
   risk?: { rate: Maybe; reason: string; share_below: Maybe; share_above: Maybe; composite: Maybe; unknown_survived: Maybe; unknown_exceeded: Maybe };
   fractiles?: { demands: number[]; p16: Maybe[]; p50: Maybe[]; p84: Maybe[] };
   tornado: { variable: string; low: number; high: number }[];
@@ -153,6 +155,7 @@ export interface Study {
   variables: Variable[];
   design?: { intensity: number; source: string };
   hazard?: { intensities: number[]; rates: number[]; source: string };
+  factors: { name: string; median: number; beta_r: number; beta_u: number; source: string }[];
   outcomes: Record<string, number>;
   limits: Limit[];
   curves: StudyCurve[];

@@ -1,6 +1,6 @@
 // Tables of a study: limit states, counts of stripes, motions with their capacities, variables, runs without an outcome.
 import { percent, significant } from "./quantity";
-import { intensity_text, intensity_unit, interval_text, percentile, rounded, searches, type Fit, type Limit, type Study } from "./study";
+import { intensity_text, intensity_unit, interval_text, percentile, rounded, searches, type Fit, type Interval, type Limit, type Study } from "./study";
 import type { Column, ColumnKind, Row, Table } from "./types";
 
 // More rows of failures than this are in runs.csv.
@@ -16,9 +16,9 @@ function limits_table(study: Study): Table[] {
   if (study.limits.length === 0) return [];
   const unknown = study.limits.some((limit) => limit.unknown > 0);
   const apart = study.limits.some(({ dispersion }) => dispersion.known);
+  const bootstrap = study.limits.some((limit) => limit.bootstrap !== undefined);
   const site = study.limits.some(({ performance }) => performance !== undefined);
   const hazard = study.limits.some(({ risk }) => risk !== undefined);
-  const composite = study.limits.some(({ risk }) => typeof risk?.composite === "number");
   const shared = study.samples > 1 && study.pairing === "crossed";
   return [{
     id: "limits",
@@ -28,32 +28,56 @@ function limits_table(study: Study): Table[] {
       (shared && apart ? "The interval of the median follows from the scatter between motions and between samples, which the curves share. " : "") +
       (shared && !apart && searches(study) ? "The interval takes all curves as independent; where the motions scatter more than the samples (\u03b2_R), it is too narrow. " : "") +
       (searches(study) ? "" : "The interval knows that runs share motions and samples. ") +
-      (apart ? "\u03b2_R: scatter between motions; \u03b2_U: between samples; HCLPF: median \u00b7 exp(\u22121.65 (\u03b2_R + \u03b2_U)). " : "") +
+      (bootstrap ? "Bootstrap: percentiles of fits to data drawn from the curve; runs count as independent. " : "") +
       (site ? `Design: probability at the design motion of ${intensity_text(study, study.design?.intensity)} and at 1.5 times it; ASCE/SEI 43 aims at 1 % and 10 %. ` : "") +
       (hazard ? "Annual rate: with which the limit is exceeded, by the fitted curve and the hazard curve. " : "") +
-      (composite ? "Composite rate: by the median and the composite \u03b2 of motions and samples instead of the fitted curve. " : "") +
       (unknown ? "Runs of unknown outcome are left out of the fit; the last two columns count them as survived and as exceeded." : ""),
     columns: [
       column("name", "Limit", "text"), column("theta", "Median", "number", intensity_unit(study)), column("interval", "Interval", "text"), column("beta", "\u03b2", "number"), column("beta_interval", "Interval of \u03b2", "text"),
-      ...(apart ? [column("beta_r", "\u03b2_R", "number"), column("beta_u", "\u03b2_U", "number"), column("hclpf", "HCLPF", "number", intensity_unit(study))] : []),
+      ...(bootstrap ? [column("bootstrap", "Bootstrap", "text"), column("beta_bootstrap", "Bootstrap of \u03b2", "text")] : []),
       ...(site ? [column("at_design", "Design", "percent"), column("at_one_and_a_half", "1.5 \u00d7 design", "percent")] : []),
       ...(hazard ? [column("rate", "Annual rate", "number")] : []),
-      ...(composite ? [column("composite", "Composite rate", "number")] : []),
       column("survived", "Survived", "number", "", 6), column("exceeded", "Exceeded", "number", "", 6), column("unknown", "Unknown", "number", "", 6),
       ...(unknown ? [column("as_survived", "Unknown as survived", "text"), column("as_exceeded", "Unknown as exceeded", "text")] : []),
     ],
     rows: study.limits.map((limit): Row => {
-      const { fit, dispersion } = limit;
-      const { lower, upper } = fit.beta_interval ?? { lower: null, upper: null };
+      const { fit, performance } = limit;
+      const beta_text = ({ lower, upper }: Interval): string => `${lower === null ? "0" : rounded(lower)} to ${upper === null ? "unbounded" : rounded(upper)}`;
+      const drawn = limit.bootstrap?.known ? limit.bootstrap : undefined;
       return {
         name: limit.name, theta: fit.theta, beta: fit.beta, interval: fit.fitted ? interval_text(study, fit.theta_interval) : `no fit: ${fit.reason}`,
-        beta_interval: !fit.fitted ? "" : `${lower === null ? "0" : rounded(lower)} to ${upper === null ? "unbounded" : rounded(upper)}`,
-        beta_r: dispersion.beta_r, beta_u: dispersion.beta_u, hclpf: dispersion.hclpf,
-        at_design: limit.performance?.at_design, at_one_and_a_half: limit.performance?.at_one_and_a_half, rate: limit.risk?.rate, composite: limit.risk?.composite,
+        beta_interval: fit.beta_interval ? beta_text(fit.beta_interval) : "",
+        bootstrap: drawn ? interval_text(study, drawn.theta_interval) : (limit.bootstrap?.reason ?? ""), beta_bootstrap: drawn?.beta_interval ? beta_text(drawn.beta_interval) : "",
+        at_design: performance?.at_design, at_one_and_a_half: performance?.at_one_and_a_half, rate: limit.risk?.rate,
         survived: limit.survived, exceeded: limit.exceeded, unknown: limit.unknown,
         as_survived: fit_text(study, limit.unknown_survived), as_exceeded: fit_text(study, limit.unknown_exceeded),
       };
     }),
+  }];
+}
+
+/** Capacities as nuclear practice states them, with the factors of safety of the plan. */
+function capacity_table(study: Study): Table[] {
+  const known = study.limits.some(({ capacity }) => capacity.known);
+  if (!known && study.factors.length === 0) return [];
+  const factors = study.factors.length > 0 ? " and of the factors of safety" : "";
+  const site = study.limits.some(({ performance }) => performance !== undefined);
+  const hazard = study.limits.some(({ risk }) => risk !== undefined);
+  return [{
+    id: "capacity",
+    title: "Capacities",
+    caption:
+      `A_m: median${factors ? ", times the medians of the factors of safety" : ""}. \u03b2_R: randomness, from motion to motion; \u03b2_U: uncertainty of knowledge; both of the runs${factors}. ` +
+      "HCLPF: A_m \u00b7 exp(\u22121.65 (\u03b2_R + \u03b2_U)), 95 % confidence of less than 5 % probability. With \u03b2_C = \u221a(\u03b2_R\u00b2 + \u03b2_U\u00b2), of the composite curve, follow " +
+      ["the intensity of 1 % probability", ...(site ? ["the probabilities at the design motion and at 1.5 times it"] : []), ...(hazard ? ["the annual rate"] : [])].join(", ") + ".",
+    columns: [
+      column("name", "Limit", "text"), column("median", "A_m", "number", intensity_unit(study)), column("beta_r", "\u03b2_R", "number"), column("beta_u", "\u03b2_U", "number"), column("beta_c", "\u03b2_C", "number"),
+      column("hclpf", "HCLPF", "number", intensity_unit(study)), column("hclpf_composite", "1 % probability", "number", intensity_unit(study)),
+      ...(site ? [column("at_design", "Design", "percent"), column("at_one_and_a_half", "1.5 \u00d7 design", "percent")] : []),
+      ...(hazard ? [column("rate", "Annual rate", "number")] : []),
+      ...(study.limits.every(({ capacity }) => capacity.known) ? [] : [column("reason", "Not known", "text")]),
+    ],
+    rows: study.limits.map(({ name, capacity, performance, risk }): Row => ({ ...capacity, name, ...performance?.composite, rate: risk?.composite })),
   }];
 }
 
@@ -142,7 +166,7 @@ function failures_table(study: Study): Table[] {
 }
 
 export function study_tables(study: Study): Table[] {
-  return [...limits_table(study), ...stripes_table(study), ...failures_table(study), ...motions_table(study)];
+  return [...limits_table(study), ...capacity_table(study), ...stripes_table(study), ...failures_table(study), ...motions_table(study)];
 }
 
 /** A variable's influence in words: "-12 %" and "+9 %". */

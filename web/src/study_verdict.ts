@@ -55,25 +55,34 @@ export function counts_text(limit: Limit): string {
 const probability_text = (probability: number): string => `${significant(100 * probability, 2)} %`;
 
 function facts_of(study: Study, limit: Limit): Fact[] {
-  const { fit, dispersion } = limit;
+  const { fit, dispersion, capacity } = limit;
+  const factors = study.factors.length > 0;
   const facts: Fact[] = [];
   if (fit.fitted && fit.theta !== undefined && fit.beta !== undefined) {
     facts.push({ label: "Median capacity", value: intensity_text(study, fit.theta), detail: `${significant(100 * limit.confidence, 3)} % interval ${interval_text(study, fit.theta_interval)}` });
     const apart = dispersion.known ? `between motions ${rounded(dispersion.beta_r ?? 0)}, between samples ${rounded(dispersion.beta_u ?? 0)}` : "of the logarithm of the capacity";
     facts.push({ label: "Dispersion \u03b2", value: rounded(fit.beta), detail: apart });
     facts.push(
-      dispersion.known && dispersion.hclpf !== undefined
-        ? { label: "HCLPF", value: intensity_text(study, dispersion.hclpf), detail: "95 % confidence of less than 5 % probability" }
+      capacity.known && capacity.hclpf !== undefined
+        ? { label: "HCLPF", value: intensity_text(study, capacity.hclpf), detail: `95 % confidence of less than 5 % probability${factors ? ", with the factors of safety" : ""}` }
         : { label: "1 % probability", value: intensity_text(study, fit.theta * Math.exp(-2.3263 * fit.beta)), detail: "of exceedance, by the fitted curve" });
   }
   const { performance, risk } = limit;
-  if (performance && performance.at_design !== null && performance.at_one_and_a_half !== null)
-    facts.push({ label: `At the design motion, ${intensity_text(study, study.design?.intensity)}`, value: probability_text(performance.at_design), detail: `${probability_text(performance.at_one_and_a_half)} at 1.5 times it; aims of ASCE/SEI 43: 1 % and 10 %, ${performance.met ? "met" : "not met"}` });
+  const { at_design, at_one_and_a_half } = (factors ? performance?.composite : performance) ?? { at_design: null, at_one_and_a_half: null };
+  if (at_design !== null && at_one_and_a_half !== null)
+    facts.push({
+      label: `At the design motion, ${intensity_text(study, study.design?.intensity)}`, value: probability_text(at_design),
+      detail: `${probability_text(at_one_and_a_half)} at 1.5 times it${factors ? ", with the factors of safety" : ""}; aims of ASCE/SEI 43: 1 % and 10 %, ${at_design <= 0.01 && at_one_and_a_half <= 0.1 ? "met" : "not met"}`,
+    });
   if (risk && risk.rate !== null) {
     const beyond = (risk.share_below ?? 0) + (risk.share_above ?? 0);
     const caution = beyond > 0.1 ? `; ${percent(beyond)} of it from beyond the points of that curve` : "";
-    const composite = typeof risk.composite === "number" ? `; ${risk.composite.toExponential(2)} with the composite \u03b2 of motions and samples` : "";
-    facts.push({ label: "Annual rate", value: risk.rate.toExponential(2), detail: `exceedances a year, by the hazard curve of the plan${caution}${composite}` });
+    const composite = typeof risk.composite === "number" ? risk.composite : undefined;
+    const beside = composite === undefined ? "" : factors ? `; ${risk.rate.toExponential(2)} by the fitted curve alone` : `; ${composite.toExponential(2)} with the composite \u03b2 of motions and samples`;
+    facts.push({
+      label: "Annual rate", value: (factors && composite !== undefined ? composite : risk.rate).toExponential(2),
+      detail: `exceedances a year, by the hazard curve of the plan${factors && composite !== undefined ? ", with the factors of safety" : ""}${caution}${beside}`,
+    });
   }
   const without = study.failures.length;
   facts.push({
@@ -132,6 +141,7 @@ export function study_choices(study: Study): Choice[] {
     ...study.limits.map((limit) => user(`Limit ${quoted(limit.name)}`, limit_text(limit), limit.source)),
     ...(study.design ? [user("Design motion", intensity_text(study, study.design.intensity), study.design.source)] : []),
     ...(study.hazard ? [user("Hazard curve", study.hazard.intensities.map((each, i) => `${significant(study.hazard?.rates[i] ?? 0, 3)} a year at ${intensity_text(study, each)}`).join(", "), study.hazard.source)] : []),
+    ...study.factors.map((factor) => user(`Factor ${quoted(factor.name)}`, `median ${significant(factor.median, 3)}, \u03b2_R ${significant(factor.beta_r, 3)}, \u03b2_U ${significant(factor.beta_u, 3)}`, factor.source)),
     { what: "Confidence of intervals", value: `${significant(100 * (study.limits[0]?.confidence ?? 0.9), 3)} %`, origin: "added by uplift", note: "two-sided, by the profile of the likelihood" },
   ];
 }

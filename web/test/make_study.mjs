@@ -33,6 +33,11 @@ function full_fit(theta, beta, error) {
     curve: { intensity: z.map((each) => theta * Math.exp(beta * each)), probability: z.map(normal), lower: z.map((each) => normal(each - 1.645 * shift)), upper: z.map((each) => normal(each + 1.645 * shift)) },
   };
 }
+/** By the formulas of EPRI TR-103959. */
+const capacity_of = (median, beta_r, beta_u) => ({
+  known: true, reason: "", median, beta_r, beta_u, beta_c: Math.hypot(beta_r, beta_u),
+  hclpf: median * Math.exp(-1.65 * (beta_r + beta_u)), hclpf_composite: median * Math.exp(-2.326 * Math.hypot(beta_r, beta_u)),
+});
 const refused = (reason) => ({ fitted: false, reason });
 
 function motions_of(count) {
@@ -50,7 +55,7 @@ function limit_of(changes) {
   return {
     name: "uplift of 30 mm", quantity: "max_opening", label: "largest gap", of: "", unit: "m", limit: LIMIT, at_least: false, source: "client", survived: 0, exceeded: 0, unknown: 0,
     capacities: [], stripes: [], confidence: 0.9, fit: refused("there are no runs"), unknown_survived: refused("there are no runs"), unknown_exceeded: refused("there are no runs"),
-    dispersion: { known: false, reason: "it takes two samples" }, tornado: [], tornado_basis: { samples: 0, responses: 0, reason: "" }, ...changes,
+    dispersion: { known: false, reason: "it takes two samples" }, capacity: { known: false, reason: "it takes two samples" }, tornado: [], tornado_basis: { samples: 0, responses: 0, reason: "" }, ...changes,
   };
 }
 
@@ -61,7 +66,7 @@ function study_of(changes) {
     format: "uplift-study-1", name: "pier", title: "Bridge pier", complete: curves.every(({ complete }) => complete),
     provenance: { version: "1", case_file: "../case.toml", case_sha256: "c0", plan_sha256: "b1", inputs: [], seed: 3 },
     intensity: { measure: "pga", label: "PGA", unit: "g_n", period: 0, damping: 0.05 }, method: { type: "ida", levels: [], largest: 6, tolerance: 0.02 },
-    samples: 1, pairing: "crossed", variables: [], failures: [], floor_spectra: [], outcomes, ...changes,
+    samples: 1, pairing: "crossed", variables: [], factors: [], failures: [], floor_spectra: [], outcomes, ...changes,
   };
 }
 
@@ -89,7 +94,7 @@ export function ida_study(count = 12, samples = 5) {
   const rate = (fit) => 1e-4 * (DESIGN / fit.theta) ** 2.5 * Math.exp(0.5 * (2.5 * fit.beta) ** 2); // of the hazard 1e-4 (a/DESIGN)^-2.5
   const composite = Math.hypot(BETA_R, 0.15, BETA_U); // of motions, samples and both together
   const site = (fit) => ({
-    performance: { ...pair(fit), at_design_interval: { lower: 0, upper: 1 }, at_one_and_a_half_interval: { lower: 0, upper: 1 }, met: false, unknown_survived: pair(fit), unknown_exceeded: pair(fit) },
+    performance: { ...pair(fit), at_design_interval: { lower: 0, upper: 1 }, at_one_and_a_half_interval: { lower: 0, upper: 1 }, met: false, unknown_survived: pair(fit), unknown_exceeded: pair(fit), composite: pair({ theta: fit.theta, beta: composite }) },
     risk: { rate: rate(fit), composite: rate({ theta: fit.theta, beta: composite }), reason: "", share_below: 0.1, share_above: 0.01, unknown_survived: rate(fit), unknown_exceeded: rate(fit) },
   });
   const rotation = limit_of({
@@ -111,12 +116,26 @@ export function ida_study(count = 12, samples = 5) {
       limit_of({
         ...counts, capacities, fit, ...site(fit), fractiles: { demands, p16, p50, p84 }, unknown_survived: fitted(THETA, BETA), unknown_exceeded: fitted(THETA, BETA),
         dispersion: { known: true, reason: "", median: THETA, beta_r: BETA_R, beta_u: BETA_U, hclpf: THETA * Math.exp(-1.65 * (BETA_R + BETA_U)) },
+        capacity: capacity_of(THETA, BETA_R, BETA_U),
         tornado: [{ variable: "soil stiffness", low: 0.8 * THETA, high: 1.25 * THETA }, { variable: "friction", low: 1.02 * THETA, high: THETA / 1.02 }],
         tornado_basis: { samples: samples - 1, responses: 46, reason: "" },
       }),
       rotation,
     ],
   });
+}
+
+/** The same with a factor of safety of 1.5 (0.4, 0), so that beta_r is 0.5, and a bootstrap of the first limit. */
+export function factored_study() {
+  const study = ida_study();
+  const [first] = study.limits;
+  const capacity = capacity_of(1.5 * THETA, 0.5, BETA_U);
+  const composite = { at_design: normal(Math.log(DESIGN / capacity.median) / capacity.beta_c), at_one_and_a_half: normal(Math.log((1.5 * DESIGN) / capacity.median) / capacity.beta_c) };
+  const bootstrap = { known: true, reason: "", draws: 2000, refused: 0, theta_interval: { lower: 0.39, upper: 0.45 }, beta_interval: { lower: 0.3, upper: 0.41 } };
+  study.factors = [{ name: "anchors", median: 1.5, beta_r: 0.4, beta_u: 0, source: "tests of the maker" }];
+  study.limits[0] = { ...first, capacity, bootstrap, performance: { ...first.performance, composite }, risk: { ...first.risk, composite: 1e-4 * (DESIGN / capacity.median) ** 2.5 * Math.exp(0.5 * (2.5 * capacity.beta_c) ** 2) } };
+  study.limits[1] = { ...study.limits[1], bootstrap: { known: false, reason: "1900 of 2000 draws have no fit" } };
+  return study;
 }
 
 /** Ten motions at five intensities, two runs without outcome, floor spectra. */

@@ -2,7 +2,7 @@
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { inject, open, write_page } from "./harness.mjs";
-import { BETA, BETA_R, BETA_U, THETA, cloud_study, ida_study, page_of, stripes_study } from "./make_study.mjs";
+import { BETA, BETA_R, BETA_U, THETA, cloud_study, factored_study, ida_study, page_of, stripes_study } from "./make_study.mjs";
 
 /** Nothing reaches beyond the page or its tile. */
 async function check_width(page, check, width, shot) {
@@ -74,7 +74,8 @@ async function check_ida(browser, check, shot) {
     // and with the composite dispersion, of 0.3^2 + 0.15^2 + 0.2^2 = 0.1525: 1e-4 (0.42/0.2)^-2.5 exp(2.5^2 0.1525/2) = 2.52e-5 a year
     check.ok(/2\.52e-5 with the composite \u03b2 of motions and samples/.test(text), "and that of the composite dispersion", text);
     const [first] = rows_of(report, "limits");
-    check.ok(near(first.composite, 2.52e-5, 1e-7), "which is in the table", `${first.composite}`);
+    const [capacity] = rows_of(report, "capacity");
+    check.ok(near(capacity.rate, 2.52e-5, 1e-7), "which is in the table", `${capacity.rate}`);
     check.ok(near(first.at_design, 0.0198, 1e-4) && near(first.rate, 2.35e-5, 1e-7), "both are in the table", `${first.at_design} ${first.rate}`);
     const bars = await page.locator(".tornado").first().locator("rect").evaluateAll((list) => list.map((e) => Number(e.getAttribute("width"))));
     check.equal(bars.length, 4, "the tornado has two bars for each variable");
@@ -85,6 +86,24 @@ async function check_ida(browser, check, shot) {
     check.ok((await page.locator("#case").innerText()).includes("Plan of the study"), "the plan can be read");
     check.ok((await page.locator("#choices").innerText()).includes("factor, lognormal, median 1, β 0.4"), "the variables are stated");
   }, shot && { folder: shot, name: "study_ida" });
+}
+
+async function check_factors(browser, check, shot) {
+  await shown(browser, check, factored_study(), async ({ page, report, text }) => {
+    // 1.5 x 0.42 exp(-1.65 (0.5 + 0.2)) = 0.1985; with beta_c = 0.5385 the composite curve has 1 % at 0.63 exp(-2.326 x 0.5385) = 0.180
+    check.ok(/HCLPF 0\.198 g 95 % confidence of less than 5 % probability, with the factors of safety/i.test(text), "the HCLPF has the factors in it", text);
+    const [first, second] = rows_of(report, "limits");
+    const [capacity, unknown] = rows_of(report, "capacity");
+    check.ok(near(capacity.hclpf, 0.1985, 1e-4) && near(capacity.hclpf_composite, 0.18, 1e-3) && near(capacity.median, 0.63, 1e-12), "and so have the columns", JSON.stringify(capacity));
+    check.ok(near(capacity.at_design, 0.0165, 1e-4) && near(first.at_design, 0.0198, 1e-4) && unknown.reason === "it takes two samples", "the fit has none of them; an unknown capacity has its reason", JSON.stringify(unknown));
+    // ln(0.63/0.2)/0.5385 = 2.1309, ln(0.63/0.3)/0.5385 = 1.3777: 1.65 % and 8.4 %
+    check.ok(/AT THE DESIGN MOTION, 0\.200 G 1\.7 % 8\.4 % at 1\.5 times it, with the factors of safety; aims of ASCE\/SEI 43: 1 % and 10 %, not met/i.test(text), "and the design motion", text);
+    // 1e-4 (0.63/0.2)^-2.5 exp(2.5^2 0.29/2) = 1.405e-5 a year
+    check.ok(/ANNUAL RATE 1\.4[01]e-5 exceedances a year, by the hazard curve of the plan, with the factors of safety.*; 2\.35e-5 by the fitted curve alone/i.test(text), "and the annual rate", text);
+    check.equal(`${first.bootstrap.replace("\u00a0", " ")}; ${first.beta_bootstrap}; ${second.bootstrap}`, "0.390 to 0.450 g; 0.300 to 0.410; 1900 of 2000 draws have no fit", "the bootstrap stands beside the intervals, or why there is none");
+    const choices = await page.locator("#choices").innerText();
+    check.ok(choices.includes("anchors") && choices.includes("median 1.5, β_R 0.4, β_U 0") && choices.includes("tests of the maker"), "the factor and its source are among the choices", choices);
+  }, shot && { folder: shot, name: "study_factors" });
 }
 
 async function check_stripes(browser, check, shot) {
@@ -127,6 +146,7 @@ async function check_cloud(browser, check) {
 
 export async function check_studies(browser, check, shots) {
   await check_ida(browser, check, shots);
+  await check_factors(browser, check, shots);
   await check_stripes(browser, check, shots);
   await check_cloud(browser, check);
 }

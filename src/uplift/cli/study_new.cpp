@@ -51,6 +51,11 @@ source = "judgement"
 # [hazard]                            # annual rate with which each limit is exceeded
 # intensities = [0.1, 0.3, 1.0]
 # rates = [2e-3, 2e-4, 5e-6]          # a year
+#
+# [[factor]]                          # a factor of safety that the runs do not vary: capacity and HCLPF of every limit
+# name = "strength of the anchors"
+# median = 1.2
+# beta_u = 0.15
 
 # ---- uncertain numbers of the case: a Latin hypercube ----
 

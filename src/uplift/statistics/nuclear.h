@@ -31,6 +31,7 @@ struct SeismicCapacity {
 struct SafetyFactor {
   std::string name;
   double median = 1, beta_r = 0, beta_u = 0;
+  std::string source = {};  // where the numbers come from
 };
 /// A_m = reference * product of the medians; variances of the logarithms add up. Source: EPRI TR-103959 (1994). Refused where a median or
 /// the reference is not positive, or a beta is negative or not finite (with the factor's name).

@@ -260,6 +260,7 @@ StudyLimitFit fit_limit(const StudyCase& study, const std::vector<StudyCurve>& c
   if (lacks_number(limit, curves)) {
     const Refused refused{"no run has the number " + std::string(limit.quantity->name) + ", so that none can exceed its limit"};
     fit.fit = {refused, refused, refused};
+    fit.capacity = refused;
     return fit;
   }
   if (study.plan.method.searches()) {
@@ -271,6 +272,9 @@ StudyLimitFit fit_limit(const StudyCase& study, const std::vector<StudyCurve>& c
   } else {
     fit_cloud_of(limit, curves, fit);
   }
+  if (const Fragility* curve = std::get_if<Fragility>(&fit.fit.middle); curve && study.plan.bootstrap > 0)
+    fit.bootstrap = curve->bootstrap(study.plan.seed, study.plan.bootstrap);
+  fit.capacity = seismic_capacity(study.plan.site, fit, !study.plan.variables.empty());
   if (study.plan.variables.empty()) return fit;
   const ColumnMeans response = responses(study, limit, curves, fit.capacities);
   fit.tornado = tornado_of(study, response.mean);
@@ -293,10 +297,33 @@ OrRefused<AnnualRisk> risk_of(const StudySite& site, const OrRefused<Fragility>&
   return risk_of_curve(site.hazard, fit.theta(), fit.beta());
 }
 
-OrRefused<AnnualRisk> composite_risk_of(const StudySite& site, const OrRefused<TwoWayLayout>& layout) {
-  if (const Refused* refused = std::get_if<Refused>(&layout)) return *refused;
-  const SeismicCapacity capacity = std::get<TwoWayLayout>(layout).capacity();
-  return risk_of_curve(site.hazard, capacity.median, capacity.beta_c());
+OrRefused<SeismicCapacity> seismic_capacity(const StudySite& site, const StudyLimitFit& fit, bool sampled) {
+  SeismicCapacity of_runs;
+  if (const TwoWayLayout* layout = std::get_if<TwoWayLayout>(&fit.layout)) {
+    of_runs = layout->capacity();
+  } else {
+    if (sampled) return std::get<Refused>(fit.layout);
+    if (const Refused* refused = std::get_if<Refused>(&fit.fit.middle)) return *refused;
+    if (std::ranges::none_of(site.factors, [](const SafetyFactor& factor) { return factor.beta_u > 0; }))
+      return Refused{"nothing says how uncertain it is: samples of variables, crossed with the motions, or [[factor]] tables with beta_u"};
+    const Fragility& curve = std::get<Fragility>(fit.fit.middle);
+    of_runs = {curve.theta(), curve.beta(), 0};
+  }
+  std::vector<SafetyFactor> factors = site.factors;
+  factors.push_back({"the runs", 1, of_runs.beta_r, of_runs.beta_u});
+  return separation_of_variables(of_runs.median, factors);
+}
+
+std::optional<PerformancePair> composite_performance_of(const StudySite& site, const OrRefused<SeismicCapacity>& capacity) {
+  const SeismicCapacity* known = std::get_if<SeismicCapacity>(&capacity);
+  if (!site.design || known == nullptr) return std::nullopt;
+  return performance_pair(*site.design, known->median, known->beta_c());
+}
+
+OrRefused<AnnualRisk> composite_risk_of(const StudySite& site, const OrRefused<SeismicCapacity>& capacity) {
+  if (const Refused* refused = std::get_if<Refused>(&capacity)) return *refused;
+  const SeismicCapacity& known = std::get<SeismicCapacity>(capacity);
+  return risk_of_curve(site.hazard, known.median, known.beta_c());
 }
 
 std::vector<StudyFloor> floor_percentiles(const StudyCase& study, const std::vector<StudyCurve>& curves) {

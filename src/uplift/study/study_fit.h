@@ -40,6 +40,8 @@ struct StudyLimitFit {
   BothWays fit{Refused{"there are no runs"}, Refused{"there are no runs"}, Refused{"there are no runs"}};
   OrRefused<TwoWayLayout> layout = Refused{"it is of searches, with two samples and two motions at least, crossed"};
   OrRefused<SharedError> shared = Refused{"it is of stripes and clouds"};  // of the fit in the middle
+  OrRefused<Bootstrap> bootstrap = Refused{"the plan asks for none"};      // of the fit in the middle
+  OrRefused<SeismicCapacity> capacity = Refused{"there are no runs"};      // with the factors of safety of the plan
   /// Of the median of the fit in the middle, which exists. Curves share their motions and their samples: where the layout is known, its
   /// interval; of stripes and clouds at least that of the shared error; else all curves count as independent.
   ConfidenceInterval theta_interval() const;
@@ -67,8 +69,12 @@ std::vector<StudyFloor> floor_percentiles(const StudyCase& study, const std::vec
 std::optional<PerformancePair> performance_of(const StudySite& site, const OrRefused<Fragility>& curve);
 /// Annual rate with which the limit is exceeded, by the hazard curve of the site; refused without one, and without a curve.
 OrRefused<AnnualRisk> risk_of(const StudySite& site, const OrRefused<Fragility>& curve);
-/// The same with the median and the composite beta of the two-way layout: the scatter of capacities as components of variance, which for
-/// few motions and samples differs from that of the fit. Refused where motions and samples cannot be told apart.
-OrRefused<AnnualRisk> composite_risk_of(const StudySite& site, const OrRefused<TwoWayLayout>& layout);
+/// Median, beta_R and beta_U by the two-way layout, or, where the runs vary no number of the case, by the fit in the middle, whose beta
+/// then is beta_R; times the factors of safety. Refused where motions and samples cannot be told apart, and where nothing says beta_U.
+OrRefused<SeismicCapacity> seismic_capacity(const StudySite& site, const StudyLimitFit& fit, bool sampled);
+/// The same with the median and the composite beta of the capacity. By components of variance it differs, for few motions and samples,
+/// from that of the fit.
+std::optional<PerformancePair> composite_performance_of(const StudySite& site, const OrRefused<SeismicCapacity>& capacity);
+OrRefused<AnnualRisk> composite_risk_of(const StudySite& site, const OrRefused<SeismicCapacity>& capacity);
 
 }  // namespace uplift

@@ -189,6 +189,24 @@ void write_fit(ResultWriter& out, const OrRefused<Fragility>& result, const Stud
   });
 }
 
+void write_bootstrap(ResultWriter& out, const OrRefused<Bootstrap>& result) {
+  const Bootstrap* bootstrap = std::get_if<Bootstrap>(&result);
+  const bool there = bootstrap != nullptr || out.is_schema();
+  out.flag("known", bootstrap != nullptr, "whether at least half of the draws have a fit");
+  out.text("reason", bootstrap ? "" : std::get<Refused>(result).reason, "why not");
+  out.when(there).count("draws", bootstrap ? bootstrap->draws() : 0, "draws that have a fit");
+  out.when(there).count("refused", bootstrap ? bootstrap->refused() : 0, "draws that have none, which are left out");
+  out.when(there).number("se_log_theta", bootstrap ? bootstrap->se_log_theta() : 0, "1", "standard deviation of ln theta");
+  out.when(there).number("se_beta", bootstrap ? bootstrap->se_beta() : 0, "1", "standard deviation of beta");
+  out.when(there).number("correlation", bootstrap ? bootstrap->correlation() : 0, "1", "correlation of both");
+  if (!there) return;
+  out.when(there);
+  write_interval(out, "theta_interval", bootstrap ? bootstrap->theta(study_confidence) : ConfidenceInterval{}, intensity_unit,
+                 "percentiles of theta; runs count as independent");
+  out.when(there);
+  write_interval(out, "beta_interval", bootstrap ? bootstrap->beta(study_confidence) : ConfidenceInterval{}, "1", "percentiles of beta");
+}
+
 void write_capacity_end(ResultWriter& out, std::string_view key, const std::optional<RecordCapacity>& capacity, std::string_view meaning) {
   out.object(key, meaning, [&] {
     out.word("known", capacity ? word_of(capacity->known) : "nothing", {"exact", "at_least", "at_most", "nothing"}, "what is known of it");
@@ -262,7 +280,13 @@ void write_limit(ResultWriter& out, const StudyDocument& study, const StudyDocum
              [&] { write_fit(out, fit.fit.middle, &fit); });
   out.object("unknown_survived", "with runs of unknown outcome counted as survived", [&] { write_fit(out, fit.fit.survived, nullptr); });
   out.object("unknown_exceeded", "with runs of unknown outcome counted as exceeded", [&] { write_fit(out, fit.fit.exceeded, nullptr); });
-  out.object("dispersion", "scatter from motion to motion and from sample to sample", [&] { write_dispersion(out, fit.layout); });
+  out.object("dispersion", "scatter of the runs from motion to motion and from sample to sample",
+             [&] { write_dispersion(out, fit.layout); });
+  out.object("capacity", "capacity as nuclear practice states it, with the factors of safety of the plan",
+             [&] { write_capacity(out, fit); });
+  out.when(study.plan.bootstrap > 0 || out.is_schema())
+      .object("bootstrap", "parametric bootstrap of the fit: data sets drawn from it and fitted again",
+              [&] { write_bootstrap(out, fit.bootstrap); });
   const StudySite& site = study.plan.site;
   out.when(site.design.has_value() || out.is_schema()).object("performance", "probabilities that the limit is exceeded, by the fit", [&] {
     write_performance(out, site, fit);
@@ -341,6 +365,7 @@ void write_study(ResultWriter& out, const StudyDocument& study) {
   out.list("variables", "uncertain numbers of the case", variables_of(study),
            [&](const Variable& variable) { write_variable(out, variable); });
   write_site(out, study.plan.site);
+  write_factors(out, study.plan.site);
   out.object("outcomes", "number of runs by their outcome", [&] { write_counts(out, study); });
   out.list("limits", "limit states", study.limits, [&](const StudyDocument::Limit& limit) { write_limit(out, study, limit); });
   out.list("curves", "runs of every motion and sample", study.curves, [&](const StudyDocument::Curve& curve) { write_curve(out, curve); });

@@ -35,6 +35,16 @@ void write_site(ResultWriter& out, const StudySite& site) {
   });
 }
 
+void write_factors(ResultWriter& out, const StudySite& site) {
+  out.list("factors", "factors of safety that the runs do not vary", site.factors, [&](const SafetyFactor& factor) {
+    out.text("name", factor.name, "name");
+    out.number("median", factor.median, "1", "median");
+    out.number("beta_r", factor.beta_r, "1", "randomness");
+    out.number("beta_u", factor.beta_u, "1", "uncertainty");
+    out.text("source", factor.source, "where the numbers come from");
+  });
+}
+
 void write_performance(ResultWriter& out, const StudySite& site, const StudyLimitFit& fit) {
   const std::optional<PerformancePair> pair = performance_of(site, fit.fit.middle);
   const double design = site.design.value_or(1);
@@ -48,6 +58,24 @@ void write_performance(ResultWriter& out, const StudySite& site, const StudyLimi
              [&] { write_pair(out, performance_of(site, fit.fit.survived)); });
   out.object("unknown_exceeded", "with runs of unknown outcome counted as exceeded",
              [&] { write_pair(out, performance_of(site, fit.fit.exceeded)); });
+  out.object("composite", "by the median and the composite beta of the capacity, with the factors of safety",
+             [&] { write_pair(out, composite_performance_of(site, fit.capacity)); });
+}
+
+void write_capacity(ResultWriter& out, const StudyLimitFit& fit) {
+  const SeismicCapacity* known = std::get_if<SeismicCapacity>(&fit.capacity);
+  const bool there = known != nullptr || out.is_schema();
+  const SeismicCapacity shown = known ? *known : SeismicCapacity{};
+  out.flag("known", known != nullptr, "whether median and both scatters are known");
+  out.text("reason", known ? "" : std::get<Refused>(fit.capacity).reason, "why not");
+  out.when(there).number("median", shown.median, intensity_unit, "median A_m: of the runs, times the medians of the factors of safety");
+  out.when(there).number("beta_r", shown.beta_r, "1", "randomness: of the runs and the factors");
+  out.when(there).number("beta_u", shown.beta_u, "1", "uncertainty: of the runs and the factors");
+  out.when(there).number("beta_c", shown.beta_c(), "1", "composite: root of the sum of both squares");
+  out.when(there).number("hclpf", shown.hclpf(), intensity_unit,
+                         "high confidence of a low probability of failure, 95 % of at most 5 %: A_m exp(-1.65 (beta_r + beta_u))");
+  out.when(there).number("hclpf_composite", shown.hclpf_composite(), intensity_unit,
+                         "1 % probability by the composite curve: A_m exp(-2.326 beta_c)");
 }
 
 void write_risk(ResultWriter& out, const StudySite& site, const StudyLimitFit& fit) {
@@ -63,10 +91,10 @@ void write_risk(ResultWriter& out, const StudySite& site, const StudyLimitFit& f
   out.number_or_null("share_below", part(&AnnualRisk::share_below), "1",
                      "share that rests on rates below the first point of the hazard curve");
   out.number_or_null("share_above", part(&AnnualRisk::share_above), "1", "share that rests on rates above its last point");
-  const OrRefused<AnnualRisk> composite = composite_risk_of(site, fit.layout);
+  const OrRefused<AnnualRisk> composite = composite_risk_of(site, fit.capacity);
   const AnnualRisk* of_both = std::get_if<AnnualRisk>(&composite);
   out.number_or_null("composite", of_both ? std::optional(of_both->rate) : std::nullopt, "1/a",
-                     "the rate by the median and the composite beta of the dispersion; null: motions and samples cannot be told apart");
+                     "the rate by the median and the composite beta of the capacity, with the factors of safety; null: it is not known");
   out.number_or_null("unknown_survived", end(fit.fit.survived), "1/a", "the rate with runs of unknown outcome counted as survived");
   out.number_or_null("unknown_exceeded", end(fit.fit.exceeded), "1/a", "the rate with runs of unknown outcome counted as exceeded");
 }

@@ -15,6 +15,10 @@ void write_interval(ResultWriter& out, std::string_view key, const ConfidenceInt
 
 /// Design motion and hazard curve.
 void write_site(ResultWriter& out, const StudySite& site);
+/// Factors of safety.
+void write_factors(ResultWriter& out, const StudySite& site);
+/// Capacity with its scatters and the factors of safety.
+void write_capacity(ResultWriter& out, const StudyLimitFit& fit);
 /// ASCE/SEI 43: probabilities at the design motion and at 1.5 times it.
 void write_performance(ResultWriter& out, const StudySite& site, const StudyLimitFit& fit);
 /// The annual rate with which a limit is exceeded.

@@ -64,8 +64,34 @@ const Section& hazard_section() {
   return s;
 }
 
+const Section& factor_section() {
+  static const Section s{"factor",
+                         "a factor of safety that the runs do not vary, as the strength of an anchor or the damping of equipment: it "
+                         "multiplies the capacity of every limit (separation of variables, EPRI TR-103959)",
+                         {text("name", "name"), number("median", "1", "median of the factor").positive().standard(1),
+                          number("beta_r", "1", "scatter from motion to motion, of the logarithm").nonnegative().standard(0),
+                          number("beta_u", "1", "uncertainty of knowledge, of the logarithm").nonnegative().standard(0),
+                          text("source", "where the numbers come from").optional()}};
+  return s;
+}
+
+std::vector<SafetyFactor> factors_of(const Values& root) {
+  std::vector<SafetyFactor> factors;
+  Names names("factor");
+  for (const Values& table : root.tables("factor")) {
+    names.add(table, "name");
+    factors.push_back(
+        {table.text("name"), table.number("median"), table.number("beta_r"), table.number("beta_u"), text_or(table, "source", "")});
+    const SafetyFactor& factor = factors.back();
+    if (factor.median == 1 && factor.beta_r == 0 && factor.beta_u == 0)
+      fail(table, "", "a median other than 1, beta_r or beta_u", "a factor that changes nothing");
+  }
+  return factors;
+}
+
 StudySite site_of(const Values& root) {
   StudySite site;
+  site.factors = factors_of(root);
   if (const Values* design = table_if(root, "design")) {
     site.design = design->number("intensity");
     site.design_source = text_or(*design, "source", "");
@@ -122,6 +148,12 @@ const Section& study_section() {
        tables("correlation", correlation_section(), "correlations of variables"), tables("limit", limit_section(), "limit states"),
        table("design", design_section(), "design motion; absent: none").optional(),
        table("hazard", hazard_section(), "hazard curve; absent: none").optional(),
+       tables("factor", factor_section(), "factors of safety that the runs do not vary"),
+       integer("bootstrap",
+               "draws of a parametric bootstrap of every fit, whose intervals stand beside those of the likelihood; 0: none. Runs count as "
+               "independent in it")
+           .between(0, 100000)
+           .standard(0),
        flag("floor_spectra", "keep the floor spectra of every run, for percentiles at the levels of stripes or of a cloud").standard(false),
        table("run", run_section(), "how the runs are computed")}};
   return s;
@@ -166,6 +198,9 @@ StudyPlan study_plan(const Raw& raw) {
     }
   for (const Values& table : root.tables("motions")) plan.many_motions.push_back(many_motions_of(table));
   plan.site = site_of(root);
+  plan.bootstrap = root.integer("bootstrap");
+  if (plan.bootstrap > 0 && plan.bootstrap < 200)
+    fail(root, "bootstrap", "0 or at least 200 draws: percentiles of fewer scatter", std::to_string(plan.bootstrap));
   plan.floor_spectra = root.flag("floor_spectra");
   if (plan.floor_spectra && plan.method.searches())
     fail(root, "floor_spectra", "stripes or cloud as the method: percentiles are those of runs at one level",

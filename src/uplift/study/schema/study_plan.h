@@ -74,11 +74,12 @@ struct StudyManyMotions {
   std::vector<std::int64_t> seeds;  // of the components of the first motion
 };
 
-/// What the site asks for: results of the fits, not of the runs.
+/// What the site asks for and what the runs do not vary: they change results of the fits, not of the runs.
 struct StudySite {
   std::optional<double> design;     // intensity of the design motion
   std::vector<HazardPoint> hazard;  // rates in 1/a; empty: none
   std::string design_source, hazard_source;
+  std::vector<SafetyFactor> factors;  // on the capacity of every limit
 };
 
 /// A checked plan.
@@ -96,6 +97,7 @@ struct StudyPlan {
   std::vector<StudyLimit> limits;
   std::vector<StudyManyMotions> many_motions;
   StudySite site;
+  int bootstrap = 0;  // draws of a parametric bootstrap of the fits; 0: none
   bool floor_spectra = false;
   std::optional<double> timeout;  // s of one run
   std::optional<double> memory;   // MB of one worker
