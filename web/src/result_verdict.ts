@@ -11,8 +11,8 @@ const OF_RUN: Captions = [
   ["max_drift_without_rotation", "Drift without base rotation"],
   ["max_storey_shear", "Largest storey shear"],
   ["max_drift_ratio", "Largest drift ratio"],
-  ["max_total_shear", "Horizontal force, base and walls"],
-  ["max_total_moment", "Moment, base and walls"],
+  ["max_total_shear", "Horizontal force, all bases and walls"],
+  ["max_total_moment", "Moment, all bases and walls"],
 ];
 const OF_BASE: Captions = [
   ["max_shear", "Base shear"],
@@ -145,6 +145,9 @@ function base_of(catalog: Catalog, summary: Summary, extras: VerdictExtras, k: n
   };
 }
 
+/** A change that grows says so: "+32 %". */
+const signed = (quantity: Quantity, value: number, text: string): string => (quantity.name.startsWith("change_of") && value > 0 ? `+${text}` : text);
+
 function criteria_of(catalog: Catalog, summary: Summary): Criterion[] {
   return summary.verdict.criteria.map((each) => {
     const quantity = quantity_of(catalog, each.quantity, each.unit);
@@ -154,8 +157,8 @@ function criteria_of(catalog: Catalog, summary: Summary): Criterion[] {
       label: quantity.meaning,
       interface: each.interface ?? each.beam ?? "",
       state: each.result,
-      valueText: each.value === null ? "not computed" : format_within(quantity, each.value, swing),
-      limitText: format_value(quantity, each.limit),
+      valueText: each.value === null ? "not computed" : signed(quantity, each.value, format_within(quantity, each.value, swing)),
+      limitText: signed(quantity, each.limit, format_value(quantity, each.limit)),
       atLeast: each.kind === "at_least",
       source: each.source,
     };

@@ -218,8 +218,20 @@ std::shared_ptr<const Model> resting_model(const Case& read, const RunSpec& spec
     interface.law = make_law(*built.behaviours[k], interface.footprint);
     interface.cone = interface.law ? nullptr : make_part(cone_catalog(), *built.behaviours[k]);
     interface.behaviour = built.model.interfaces[k].behaviour;
+    interface.gap = built.model.interfaces[k].gap;
   }
   return rest;
+}
+
+/// A bonded joint in the place of a constraint is much stiffer than the structure: an initial displacement that opens it would fling the
+/// structure away. The bonded run begins without.
+void leave_out_opening_displacement(BuiltCase& built) {
+  Vector& displacement = built.plan.initial_displacement;
+  if (displacement.size() == 0) return;
+  const double least = 1e-9 * displacement.cwiseAbs().maxCoeff();
+  if (std::ranges::any_of(built.model.interfaces,
+                          [&](const Interface& interface) { return Vector(interface.b * displacement).cwiseAbs().maxCoeff() > least; }))
+    displacement.resize(0);
 }
 
 /// N/m; of rigid bodies alone any number does.
@@ -239,6 +251,7 @@ void adapt_laws(const Case& read, const RunSpec& spec, BuiltCase& built) {
     Interface& interface = built.model.interfaces[k];
     const Values& behaviour = *built.behaviours[k];
     std::unique_ptr<const Values> derived;
+    if (spec.bonded) interface.gap.setZero();  // connected as drawn: closing the gaps would prestress the structure
     if (spec.bonded && interface.footprint) {
       derived = std::make_unique<const Values>(bonded_foundation(behaviour, interface));
     } else if (spec.bonded) {
@@ -376,6 +389,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
       stage != nullptr && plan.impact->acts() && (!stage->path_average || plan.method->constrains()))
     check_impulses(built.model);
   add_initial(*read.input, names, built);
+  if (spec.bonded && built.laws_of_step) leave_out_opening_displacement(built);
   find_shown(read, names, built);
   plan.created_limit = read.input->energy.created_limit;
   plan.stop_at_limit = read.input->energy.stop_at_limit;

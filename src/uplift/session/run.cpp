@@ -96,6 +96,10 @@ Results run_case(const LoadedCase& loaded, const Control& control) {
       judge(results.built.front(), main, results.runs.size() > 1 ? &results.runs[1] : nullptr, &results.floors.runs.front(), companion);
   for (std::string& warning : result_warnings(main, results.verdict.numbers)) results.warnings.push_back(std::move(warning));
   for (std::string& warning : edge_warnings(results.built.front(), results.verdict.numbers)) results.warnings.push_back(std::move(warning));
+  const CaseDamping* damping = results.specs.front().damping;
+  const double beta = damping != nullptr ? damping->made.beta : loaded.read.input->damping ? loaded.read.input->damping->made.beta : 0;
+  if (std::string warning = damped_impacts(results.built.front(), results.verdict.numbers, beta); !warning.empty())
+    results.warnings.push_back(std::move(warning));
   if (const auto effects = second_order_of(results.built.front(), main, results.verdict.numbers); effects && effects->counts())
     results.warnings.push_back(effects->warning());
   return results;

@@ -39,6 +39,20 @@ std::string few_points(const Interface& interface, double uplifted, const Interf
 
 }  // namespace
 
+std::string damped_impacts(const BuiltCase& built, const VerdictNumbers& numbers, double beta) {
+  if (!(beta > 0) || numbers.beams.empty() || !dynamic_stage(built.plan)) return "";
+  for (std::size_t k = 0; k < std::min(numbers.interfaces.size(), built.model.interfaces.size()); ++k) {
+    const VerdictNumber* ratio = find_number(numbers.interfaces[k].numbers, "max_uplifted_ratio");
+    if (built.model.interfaces[k].cone && ratio && ratio->value > 0)
+      return fmt::format(
+          "{} opens on constraints, whose impacts change velocities at once: with damping in proportion to the stiffness (beta = {:.3g} s) "
+          "the largest section forces of the beams contain a damping force that grows as the step falls, which no step settles; take a "
+          "joint of finite stiffness for them, or alpha alone",
+          numbers.interfaces[k].name, beta);
+  }
+  return "";
+}
+
 std::vector<std::string> edge_warnings(const BuiltCase& built, const VerdictNumbers& numbers) {
   std::vector<std::string> found;
   for (std::size_t k = 0; k < std::min(numbers.bases(), built.model.interfaces.size()); ++k) {

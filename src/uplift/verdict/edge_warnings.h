@@ -10,4 +10,8 @@ namespace uplift {
 /// few points in contact at the largest uplift.
 std::vector<std::string> edge_warnings(const BuiltCase& built, const VerdictNumbers& numbers);
 
+/// What section forces of beams are worth under impacts of constraints with damping in proportion to the stiffness (beta > 0): the jump of
+/// the velocities has a damping force that grows as the step falls. Empty: no such impacts, or no beam with an envelope.
+std::string damped_impacts(const BuiltCase& built, const VerdictNumbers& numbers, double beta);
+
 }  // namespace uplift

@@ -44,6 +44,19 @@ Vec3 without(const Vec3& vector, const Vec3& axis) {
   return vector - vector.dot(axis) * axis;
 }
 
+/// The point to which the moments of all interfaces refer: that of the base, of several their middle by area.
+Place middle_of_bases(const BuiltCase& built) {
+  const std::vector<Interface>& interfaces = built.model.interfaces;
+  if (built.bases() < 2) return interfaces.front().reference;
+  Vec3 sum = Vec3::Zero();
+  double area = 0;
+  for (std::size_t k = 0; k < built.bases(); ++k) {
+    sum += built.facts[k].area * (interfaces[k].reference - interfaces.front().reference);
+    area += built.facts[k].area;
+  }
+  return interfaces.front().reference + sum / area;
+}
+
 }  // namespace
 
 FoundationForces foundation_forces(const BuiltCase& built, const RunResult& run) {
@@ -51,7 +64,8 @@ FoundationForces foundation_forces(const BuiltCase& built, const RunResult& run)
   const StepRecord& steps = run.steps;
   FoundationForces made;
   std::vector<Mover> movers;
-  for (const Interface& interface : model.interfaces) movers.emplace_back(interface, model.interfaces.front().reference);
+  const Place middle = middle_of_bases(built);
+  for (const Interface& interface : model.interfaces) movers.emplace_back(interface, middle);
   const Vec3 up = model.space.axis(model.space.up());
   const auto shear_of = [&](std::size_t i, std::size_t k) { return without(movers[k].at(steps.at(i, k)).force, up); };
   const auto moment_of = [&](std::size_t i, std::size_t k) { return without(movers[k].at(steps.at(i, k)).moment, up); };

@@ -227,15 +227,16 @@ void add_motions(const BuiltCase& built, const RunResult& run, const RunResult* 
   add_motion("max_drift_without_rotation", [&](const RunResult& each) { return largest_drift(built, each, Drift::without_rotation); });
 }
 
-/// What bases and walls carry together, and the shares of the walls.
+/// What several bases, or bases and walls, carry together, and the shares of the walls.
 void add_foundation(const BuiltCase& built, const RunResult& run, const RunResult* bonded, VerdictNumbers& numbers) {
-  if (built.bases() == built.facts.size() || run.steps.size() == 0) return;
+  if (built.facts.size() < 2 || run.steps.size() == 0) return;
   const FoundationForces forces = foundation_forces(built, run), beside = bonded ? foundation_forces(built, *bonded) : FoundationForces();
   const double least = std::max(forces.least, beside.least);
   const auto peak = [](const StepRecord::Reached& reached) { return Peak{"", "", reached.value, reached.time}; };
   const auto reference = [&](const StepRecord::Reached& reached) { return bonded ? std::optional(peak(reached)) : std::nullopt; };
-  const auto width = numbers.interfaces.front().width;
-  const double least_moment = least * std::max(width[0], width[1]);
+  double width = 0;
+  for (const InterfaceVerdict& said : numbers.interfaces) width = std::max({width, said.width[0], said.width[1]});
+  const double least_moment = least * width;
   add_whole(numbers.whole, "max_total_shear", peak(forces.shear), reference(beside.shear), least);
   add_whole(numbers.whole, "max_total_moment", peak(forces.moment), reference(beside.moment), least_moment);
   for (std::size_t k = built.bases(); k < built.facts.size(); ++k) {

@@ -135,7 +135,11 @@ void judge(StepCheck& check) {
 
 std::string what_changes(const VerdictQuantity* quantity, const std::string& of) {
   if (!quantity) return of.empty() ? "" : "floor spectrum of " + of;
-  return of.empty() ? std::string(quantity->brief) : fmt::format("{} of {}", quantity->brief, of);
+  std::string_view brief = quantity->brief;
+  constexpr std::string_view of_the_beam = " of the beam";
+  const bool names_beam = !of.empty() && brief.ends_with(of_the_beam);
+  if (names_beam) brief.remove_suffix(of_the_beam.size());
+  return of.empty() ? std::string(brief) : fmt::format("{} of {}{}", brief, names_beam ? "beam " : "", of);
 }
 
 /// Relative to the larger of both values, 0.3 %.

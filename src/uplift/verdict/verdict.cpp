@@ -229,7 +229,7 @@ bool is_negligible(const VerdictNumber& number) {
   return std::abs(number.value) <= std::max(number.least, nothing_beside(number.quantity->unit));
 }
 
-void say_structure(Verdict& verdict) {
+void say_structure(const BuiltCase& built, Verdict& verdict) {
   const auto fact = [&](QuantityName name, const char* label, const std::string& detail, bool tile) {
     const VerdictNumber* number = find_number(verdict.numbers.whole, name);
     if (!number || is_negligible(*number)) return;
@@ -237,7 +237,8 @@ void say_structure(Verdict& verdict) {
     verdict.facts.push_back({label, text_of(*number), change + detail + at(*number), tile, format_step_change(*number)});
   };
   fact("max_top_motion", "Top motion", "", true);
-  fact("max_drift", "Drift of the top", "relative to the base, ", false);
+  fact("max_drift", "Drift of the top", "relative to " + (verdict.numbers.bases() > 1 ? built.facts.front().name : "the base") + ", ",
+       false);
   fact("max_drift_without_rotation", "Drift without base rotation", "deformation of the structure, ", false);
   fact("max_storey_shear", "Storey shear", "largest of those recorded, ", false);
   fact("max_drift_ratio", "Drift ratio", "largest of those recorded, ", false);
@@ -324,11 +325,14 @@ void say_consequence(const FloorRun* floors, Verdict& verdict) {
   const auto add = [&parts](const char* what, const VerdictNumber* number) {
     if (number && number->change) parts.push_back(fmt::format("{} {}", what, format_change(*number->change)));
   };
-  if (verdict.numbers.bases() > 0) {
+  const bool several = verdict.numbers.bases() > 1, walls = verdict.numbers.bases() < verdict.numbers.interfaces.size();
+  if (verdict.numbers.bases() == 1) {
     add("base moment", find_number(verdict.numbers.interfaces.front().numbers, "max_moment"));
     add("base shear", find_number(verdict.numbers.interfaces.front().numbers, "max_shear"));
   }
-  add("moment of base and walls", find_number(verdict.numbers.whole, "max_total_moment"));
+  add(walls ? "moment of base and walls" : "moment of all bases", find_number(verdict.numbers.whole, "max_total_moment"));
+  if (several)
+    add(walls ? "horizontal force of bases and walls" : "shear of all bases", find_number(verdict.numbers.whole, "max_total_shear"));
   add("top motion", find_number(verdict.numbers.whole, "max_top_motion"));
   if (const std::string range = floors ? range_of_bands(*floors) : ""; !range.empty()) {
     parts.push_back("floor spectra " + range);
@@ -343,7 +347,8 @@ void say_consequence(const FloorRun* floors, Verdict& verdict) {
   const auto& criteria = verdict.numbers.criteria;
   if (criteria.empty()) return;
   const auto met = std::ranges::count(criteria, CriterionResult::State::met, &CriterionResult::state);
-  verdict.consequence += fmt::format("{}{} of {} criteria met.", parts.empty() ? "" : " ", met, criteria.size());
+  verdict.consequence +=
+      fmt::format("{}{} of {} criteria met{}.", parts.empty() ? "" : " ", met, criteria.size(), several ? ", each base by itself" : "");
 }
 
 }  // namespace
@@ -378,7 +383,7 @@ Verdict judge(const BuiltCase& built, const RunResult& run, const RunResult* bon
   say_uplift(built, run, verdict);
   say_forces(built, run, verdict);
   say_radiation(built, verdict);
-  say_structure(verdict);
+  say_structure(built, verdict);
   if (bonded) say_compared(built, *bonded, verdict);
   say_consequence(floors, verdict);
   say_walls(verdict);

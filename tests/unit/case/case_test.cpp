@@ -155,6 +155,47 @@ TEST(Case, BondedRunKeepsTheDashpots) {
   EXPECT_DOUBLE_EQ(built.behaviours.front()->number("c"), 3e5);
 }
 
+/// The bonded reference is connected as drawn: closing the gap of a stop by force would prestress it.
+TEST(Case, BondedRunHasNoGaps) {
+  const auto peak = [](const std::string& gap) {
+    const std::string text =
+        "title = \"stop\"\n[nodes]\nbase = [0, 0]\ntop = [0, 8]\n[[beam]]\nname = \"column\"\nnodes = [\"base\", \"top\"]\nE = 3e10\nA = "
+        "1\n"
+        "I = 0.1\n[[mass]]\nnode = \"top\"\nmass = 1e5\ninertia = 1e4\n[[rigid]]\nnode = \"base\"\nmass = 1e5\ninertia = 1e5\n[[support]]\n"
+        "node = \"base\"\nfixed = [\"ux\"]\n[gravity]\nacceleration = [0, -9.81]\n[[interface]]\nname = \"soil\"\nfooting = { body = "
+        "\"base\", "
+        "width = 5, points = 11 }\nlaw = { type = \"springs\", K_n = 6e7, tangential = \"none\" }\n[[interface]]\nname = \"stop\"\nrole = "
+        "\"wall\"\n" +
+        gap +
+        "pairs = { upper = [\"top\"], normal = [1, 0], area = 1 }\nlaw = { type = \"springs\", K_n = 1e8, tangential = \"none\" "
+        "}\n[[function]]\n"
+        "name = \"pulse\"\nshape = { type = \"half_sine\", duration = 0.1 }\n[[load]]\nname = \"push\"\nnode = \"top\"\nforce = [3e5, 0]\n"
+        "function = \"pulse\"\n[[stage]]\ntype = \"static\"\n[[stage]]\ntype = \"dynamic\"\nduration = 0.3\nstep = 1e-3\n";
+    const Case file = check_case(read_toml_text(text, "case.toml"), "case.toml");
+    const BuiltCase built = build(file, runs_of_case(file)[1]);
+    const RunResult result = run(built.model, built.plan, built.behaviours);
+    EXPECT_EQ(result.status, RunStatus::completed) << result.reason;
+    return std::abs(find_peak(result, Request::Kind::displacement, built.top_sway())->value);
+  };
+  const double without = peak("");
+  ASSERT_GT(without, 1e-5);
+  EXPECT_NEAR(peak("gap = 0.05\n"), without, 1e-12 * without);
+}
+
+/// A block that is turned on constraints: the bonded joint, a thousand times as stiff as the structure, would fling it away.
+TEST(Case, BondedRunOfAConstraintLeavesOutWhatOpensIt) {
+  const std::string text =
+      "title = \"block\"\n[nodes]\nc = [0, 2]\n[[rigid]]\nnode = \"c\"\nmass = 1e4\ninertia = 1.4e4\n[gravity]\nacceleration = [0, "
+      "-9.81]\n[[interface]]\n"
+      "name = \"j\"\nfooting = { body = \"c\", width = 1, points = 2, offset = [0, -2] }\nlaw = { type = \"coulomb\", friction = 5 }\n"
+      "[[initial]]\nnode = \"c\"\ndisplacement = [-0.2, 0.05]\nrotation = 0.1\n[[stage]]\ntype = \"dynamic\"\nduration = 0.01\nstep = "
+      "1e-4\n";
+  const Case file = check_case(read_toml_text(text, "case.toml"), "case.toml");
+  const std::vector<RunSpec> runs = runs_of_case(file);
+  EXPECT_GT(build(file, runs[0]).plan.initial_displacement.norm(), 0.1);
+  EXPECT_EQ(build(file, runs[1]).plan.initial_displacement.size(), 0);
+}
+
 TEST(Case, TractionAtTheEndOfTheStepLosesNoVelocityInASoftJoint) {
   // An impact rule is for constraints. On a linear joint average acceleration and the path average are one scheme.
   const auto top = [](const char* traction, double step) {

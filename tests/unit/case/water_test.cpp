@@ -145,9 +145,15 @@ TEST(WaterUnderABase, ThatMakesNoSenseIsRefused) {
   EXPECT_NE(refusal("water = { }\n").find("either level or head"), std::string::npos);
   EXPECT_NE(refusal("water = { level = 3, head = 2 }\n").find("either level or head"), std::string::npos);
   EXPECT_NE(refusal("water = { head = -2 }\n").find("head"), std::string::npos);
-  EXPECT_NE(refusal("water = { level = -1 }\n").find("case.toml:17: interface[0].water.level: expected a level above the lowest point"),
-            std::string::npos)
-      << refusal("water = { level = -1 }\n");
+}
+
+/// A sampled water table may lie below the base: there is no water then, and a note.
+TEST(WaterUnderABase, BelowTheBaseHasNoPressure) {
+  const BuiltCase built = built_of(block("water = { level = -1 }\n", 0));
+  EXPECT_EQ(std::ranges::find(built.model.time_loads, "water pressure in base", &TimeLoad::name), built.model.time_loads.end());
+  ASSERT_EQ(built.notes.size(), 1);
+  EXPECT_EQ(built.notes.front(), "the water stands below the joint \"base\": it has no pressure there");
+  EXPECT_TRUE(built_of(block("", 0)).notes.empty());
 }
 
 TEST(WaterUnderABase, WithPDeltaNeedsItsBodyAtTheUnderside) {

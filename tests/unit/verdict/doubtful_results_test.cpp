@@ -146,6 +146,24 @@ TEST(EdgeWarnings, FewPointsAndNoBound) {
   EXPECT_NE(of(rigid, 0.3).front().find("has no bound"), std::string::npos);
 }
 
+/// Impacts of constraints with stiffness damping: a portal on two footings, 608, 608, 662, 795, 945, 1098 kN of compression with steps from
+/// 1 ms to 1/32 ms, which without the stiffness damping settle at 1.13 MN.
+TEST(EdgeWarnings, SectionForcesOfDampedImpacts) {
+  const std::string envelope = "[[output.beam_envelope]]\nbeam = \"column\"\n";
+  const auto said = [&](const std::string& joint, double open, double beta, const std::string& more) {
+    const BuiltCase built = built_of(tower(shaken + more, "", joint));
+    const RunResult run = reaching(built, 4e5, 0.01, open);
+    VerdictNumbers numbers = numbers_of(built, run, nullptr);
+    if (!more.empty()) numbers.beams.emplace_back();
+    return damped_impacts(built, numbers, beta);
+  };
+  EXPECT_NE(said("law = \"unilateral\"\n", 0.3, 1.5e-3, envelope).find("beta = 0.0015 s"), std::string::npos);
+  EXPECT_EQ(said("law = \"unilateral\"\n", 0.3, 0, envelope), "");
+  EXPECT_EQ(said("law = \"unilateral\"\n", 0, 1.5e-3, envelope), "") << "it stays closed";
+  EXPECT_EQ(said("law = \"unilateral\"\n", 0.3, 1.5e-3, ""), "") << "no section forces";
+  EXPECT_EQ(said(law, 0.3, 1.5e-3, envelope), "") << "a joint that gives way";
+}
+
 /// A floor that only the uplifting run excites has no change, but an acceleration: 12.7 m/s2 where the bonded one has none.
 TEST(ArisingFloors, AreSaidWithTheirAcceleration) {
   FloorRun floors;

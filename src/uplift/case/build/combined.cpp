@@ -92,8 +92,9 @@ void add_combined(BuiltCase& built) {
   for (CombinedRequest* each : {&along, &up})
     if (!each->components.empty()) built.plan.combined.push_back(std::move(*each));
   if (built.base < 0 || built.top == built.base || built.facts.empty()) return;
-  for (const bool rigid : {false, true})
-    if (auto made = drift(built, rigid ? combined_bending : combined_drift, rigid)) built.plan.combined.push_back(std::move(*made));
+  if (auto made = drift(built, combined_drift, false)) built.plan.combined.push_back(std::move(*made));
+  if (built.bases() > 1) return;  // each base turns by itself: none of their rotations is that of the structure
+  if (auto made = drift(built, combined_bending, true)) built.plan.combined.push_back(std::move(*made));
 }
 
 }  // namespace uplift

@@ -92,6 +92,7 @@ std::vector<InterfacePart> interface_parts(const Case& read, bool rigid_ground, 
       InterfacePart part{&tables[k], tables[k].law, second ? name + " walls" : name, std::move(joint)};
       if (second) names.interfaces.add(part.name, tables[k].name.where(), tables[k].name.path());
       part.joint.facts.name = part.name;
+      part.water = tables[k].water.has_value();
       parts.push_back(std::move(part));
     }
   }

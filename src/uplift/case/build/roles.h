@@ -19,6 +19,7 @@ struct InterfacePart {
   Joint joint;
   const CaseFoundation* foundation = nullptr;  // null: it is none
   std::optional<Footprint> footprint = {};     // of a foundation
+  bool water = false;                          // the case states water under it
 };
 /// The interfaces of a case, bases first. A surface or a line with faces of both kinds is divided in two: the base keeps the name, the
 /// other part is called "<name> walls". A face is of a base when its normal lies within 45 degrees of the upward direction; where no face

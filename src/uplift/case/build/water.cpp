@@ -12,22 +12,17 @@ namespace uplift {
 void set_water(const std::optional<CaseWater>& water, std::vector<JointPoint>& points, const CaseNames& names) {
   if (!water) return;
   const int up = names.space.up();
-  double most = 0;
   for (JointPoint& point : points) {
     const double head = water->level ? *water->level - point.position[up] : water->head;
     point.water = water->unit_weight * std::max(0.0, head);
-    most = std::max(most, point.water);
   }
-  if (water->level && !(most > 0))
-    fail(*water, "level", "a level above the lowest point of the interface",
-         fmt::format("{:g} m, with all points at {:.6g} m or higher", *water->level,
-                     std::ranges::min(points, {}, [&](const JointPoint& point) { return point.position[up]; }).position[up]));
 }
 
 std::string note_of_water(const InterfacePart& part) {
   double force = 0, most = 0;  // N, Pa
   for (const JointPoint& point : part.joint.points) force += point.water * point.area, most = std::max(most, point.water);
-  if (most == 0) return {};
+  if (!part.water) return {};
+  if (most == 0) return fmt::format("the water stands below the joint \"{}\": it has no pressure there", part.name);
   return fmt::format(
       "the water in the joint \"{}\" pushes with {} over {:.4g} m2 (at most {}); contact pressures are effective ones, in "
       "addition to it",

@@ -16,8 +16,9 @@ using Column = Request::Kind;
 
 /// What a figure shows of every run: a column over time, or two columns against each other.
 struct View {
-  const char *id, *section, *title;
-  std::string caption;
+  std::string id;
+  const char* section;
+  std::string title, caption;
   const char *label, *unit;
   Column kind;
   int of;         // full unknown or interface
@@ -62,7 +63,7 @@ std::optional<View> view_of(const View& view, const ReportRun& run) {
   if (run.spec->other_case.empty()) return view;
   for (const auto& views : {motion_views(*run.built), interface_views(*run.built)})
     for (const View& each : views)
-      if (std::string_view(each.id) == view.id) return each;
+      if (each.id == view.id) return each;
   return std::nullopt;
 }
 
@@ -178,17 +179,18 @@ std::vector<View> motion_views(const BuiltCase& built) {
                      "m/s", Column::velocity, built.top_sway(), 1});
   }
   if (built.base >= 0) {
-    views.push_back({"base_displacement", "response", "Displacement of the base", "Vertical displacement of the base.", "Displacement", "m",
-                     Column::displacement, built.base_lift(), 1});
-    views.push_back({"base_velocity", "response", "Velocity of the base", "Vertical velocity of the base.", "Velocity", "m/s",
+    const std::string of = built.facts.empty() ? "" : of_base(built, 0);  // `base` is a node of the first one
+    views.push_back({"base_displacement", "response", "Displacement of the base" + of, "Vertical displacement of the base.", "Displacement",
+                     "m", Column::displacement, built.base_lift(), 1});
+    views.push_back({"base_velocity", "response", "Velocity of the base" + of, "Vertical velocity of the base.", "Velocity", "m/s",
                      Column::velocity, built.base_lift(), 1});
-    views.push_back(
-        {"base_rotation", "response", "Rotation of the base", about(built), "Rotation", "rad", Column::displacement, built.base_turn(), 1});
+    views.push_back({"base_rotation", "response", "Rotation of the base" + of, about(built), "Rotation", "rad", Column::displacement,
+                     built.base_turn(), 1});
   }
   return views;
 }
 
-std::vector<View> interface_views(const BuiltCase& built) {
+std::vector<View> views_of_one_interface(const BuiltCase& built) {
   return {
       {"base_moment", "interface", "Base moment", "Moment of the interface about its centre. " + about(built), "Moment", "N m",
        built.base_moment(), 0, 1},
@@ -198,8 +200,8 @@ std::vector<View> interface_views(const BuiltCase& built) {
        Column::uplifted_ratio, 0, 1},
       {"max_opening", "interface", "Largest gap", "Largest opening of the interface, up to its edges.", "Gap", "m", Column::max_opening, 0,
        1},
-      {"max_pressure", "interface", "Largest pressure", "Largest pressure of all points, at the end of each step.", "Pressure", "Pa",
-       Column::max_pressure, 0, 1},
+      {"max_pressure", "interface", "Largest pressure", "Largest pressure of all points; with the path average the mean over each step.",
+       "Pressure", "Pa", Column::max_pressure, 0, 1},
       {"bearing_utilisation", "interface", "Utilisation of bearing capacity",
        "Vertical force over the bearing capacity under the shear and the moment of the same time. The ground yields at 1. At the end of "
        "each step.",
@@ -212,9 +214,21 @@ std::vector<View> interface_views(const BuiltCase& built) {
        Column::sliding_utilisation, 0, 1}};
 }
 
-/// Height of the top above the base [m]; 0 without them.
+std::vector<View> interface_views(const BuiltCase& built) {
+  std::vector<View> views;
+  for (std::size_t k = 0; k < bases_shown(built); ++k)
+    for (View& view : views_of_one_interface(built)) {
+      view.id = id_of(view.id, k);
+      if (!built.facts.empty()) view.title += of_base(built, k);
+      view.of = static_cast<int>(k);
+      views.push_back(std::move(view));
+    }
+  return views;
+}
+
+/// Height of the top above the base [m]; 0 without them, and on several bases, whose moments are not those of the whole structure.
 double height_of_top(const BuiltCase& built) {
-  if (built.top < 0 || built.base < 0 || built.model.interfaces.empty()) return 0;
+  if (built.top < 0 || built.base < 0 || built.model.interfaces.empty() || built.bases() > 1) return 0;
   const int up = built.model.space.up();
   return built.model.nodes[static_cast<std::size_t>(built.top)].position[up] - built.model.interfaces.front().reference[up];
 }
@@ -239,22 +253,30 @@ void write_loops(JsonWriter& json, const ReportInput& input, const std::vector<R
   const BuiltCase& built = *input.runs.front().built;
   if (built.model.interfaces.empty()) return;
   if (const double height = height_of_top(built); height > 0) write_chart(json, force_displacement_chart(runs, height));
-  Chart tilts{"moment_tilt",
-              "interface",
-              "Moment against tilt",
-              "Base moment against the tilt of the base, which contains the deformation of the ground under it.",
-              {"Tilt", "rad"},
-              {"Moment", "N m"},
-              {}};
-  Chart rotations{
-      "moment_rotation", "interface", "Moment against rotation", "Base moment against the rotation of the interface.", {"Rotation", "rad"},
-      {"Moment", "N m"}, {}};
-  for (const ReportRun& run : runs) {
-    add_loop(tilts, run, {run.built->base_tilt(), 0}, {run.built->base_moment(), 0});
-    add_loop(rotations, run, {run.built->base_rotation(), 0}, {run.built->base_moment(), 0});
+  for (std::size_t k = 0; k < bases_shown(built); ++k) {
+    const std::string of = built.facts.empty() ? "" : of_base(built, k);
+    Chart tilts{id_of("moment_tilt", k),
+                "interface",
+                "Moment against tilt" + of,
+                "Base moment against the tilt of the base, which contains the deformation of the ground under it.",
+                {"Tilt", "rad"},
+                {"Moment", "N m"},
+                {}};
+    Chart rotations{id_of("moment_rotation", k),
+                    "interface",
+                    "Moment against rotation" + of,
+                    "Base moment against the rotation of the interface.",
+                    {"Rotation", "rad"},
+                    {"Moment", "N m"},
+                    {}};
+    const int number = static_cast<int>(k);
+    for (const ReportRun& run : runs) {
+      add_loop(tilts, run, {run.built->base_tilt(), number}, {run.built->base_moment(), number});
+      add_loop(rotations, run, {run.built->base_rotation(), number}, {run.built->base_moment(), number});
+    }
+    write_chart(json, tilts);
+    if (!built.model.interfaces[k].footprint) write_chart(json, rotations);
   }
-  write_chart(json, tilts);
-  if (!built.model.interfaces.front().footprint) write_chart(json, rotations);
   for (std::size_t k = 0; k < built.model.interfaces.size(); ++k)
     for (const Chart& chart : foundation_charts(runs, k)) write_chart(json, chart);
 }
@@ -270,6 +292,19 @@ std::vector<double> values_of(const ReportRun& run, const LoopAxis& axis) {
 }
 
 }  // namespace
+
+std::string of_base(const BuiltCase& built, std::size_t number) {
+  return built.bases() > 1 ? " of " + built.facts[number].name : "";
+}
+
+std::size_t bases_shown(const BuiltCase& built) {
+  constexpr std::size_t most = 4;
+  return std::clamp<std::size_t>(built.bases(), 1, most);
+}
+
+std::string id_of(std::string_view id, std::size_t base) {
+  return base == 0 ? std::string(id) : fmt::format("{}_{}", id, base + 1);
+}
 
 void add_loop(Chart& chart, const ReportRun& run, const LoopAxis& x, const LoopAxis& y) {
   const std::vector<double> along = values_of(run, x), up = values_of(run, y);

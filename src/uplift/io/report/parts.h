@@ -55,6 +55,11 @@ struct Chart {
 /// Nothing without curves. `origin`: where a figure comes from whose case does not state it.
 void write_chart(JsonWriter& json, const Chart& chart, std::string_view origin = {});
 /// What an axis of a loop shows: a column times a factor, and where `other_factor` is not 0 another column of the same owner.
+/// Of several bases, the first four have figures of their own: " of i1" for the title, and the identity of a figure of base `base`.
+std::string of_base(const BuiltCase& built, std::size_t number);
+std::size_t bases_shown(const BuiltCase& built);
+std::string id_of(std::string_view id, std::size_t base);
+
 struct LoopAxis {
   Request::Kind column;
   int of;  // full unknown or interface

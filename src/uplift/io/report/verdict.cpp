@@ -28,16 +28,17 @@ Curve along(const char* label, const std::vector<std::pair<double, int>>& order,
   return curve;
 }
 
-/// One history of the first interface, for all runs that open.
-Chart safety_chart(const char* id, const char* title, const char* caption, BaseHistory which, const std::vector<ReportRun>& runs) {
+/// One history of a base, for all runs that open.
+Chart safety_chart(const char* id, std::string title, const char* caption, BaseHistory which, std::size_t base,
+                   const std::vector<ReportRun>& runs) {
   const bool safety = which == BaseHistory::overturning_safety || which == BaseHistory::sliding_safety;
-  Chart chart{id, "interface", title, caption, {"Time", "s"}, {safety ? "Safety" : "e/B", "1"}, {}};
+  Chart chart{id_of(id, base), "interface", std::move(title), caption, {"Time", "s"}, {safety ? "Safety" : "e/B", "1"}, {}};
   for (const ReportRun& run : runs) {
-    if (run.spec->bonded || run.result->steps.size() == 0 || run.built->facts.empty()) continue;
+    if (run.spec->bonded || run.result->steps.size() == 0 || run.built->facts.size() <= base) continue;
     Curve curve;
     curve.label = curve.run = run.result->label;
     curve.failed = run.result->status == RunStatus::failed;
-    const std::vector<double> history = base_history(*run.built, *run.result, 0, which);
+    const std::vector<double> history = base_history(*run.built, *run.result, base, which);
     for (std::size_t i = 0; i < history.size(); ++i)
       if (std::isfinite(history[i])) {
         curve.x.push_back(run.result->steps.time[i]);
@@ -81,47 +82,69 @@ void write_uplifted_shares(JsonWriter& json, const ReportInput& input) {
   json.end_array();
 }
 
-std::vector<Chart> rest_charts(const ReportRun& run) {
-  const Model& model = run.built->model;
+/// Gap and pressure along a base, whose points begin at `first` in the frames.
+void add_rest_charts(const ReportRun& run, std::size_t number, Index first, std::vector<Chart>& charts) {
   const std::vector<Frame>& frames = run.result->frames;
-  if (model.space.dimension == 3 || model.interfaces.empty() || frames.empty()) return {};
-  const Interface& interface = model.interfaces.front();
-  if (interface.footprint) return {};  // one point has no profile
-  const Vec3 t = local_axis(model.space, mean_normal(interface), 0);
+  const Interface& interface = run.built->model.interfaces[number];
+  const Index points = interface.batch.points;
+  const Vec3 t = local_axis(run.built->model.space, mean_normal(interface), 0);
   std::vector<std::pair<double, int>> order;
-  for (int i = 0; i < interface.batch.points; ++i)
-    order.emplace_back(t.dot(interface.position[static_cast<std::size_t>(i)] - interface.reference), i);
+  for (int i = 0; i < points; ++i) order.emplace_back(t.dot(interface.position[static_cast<std::size_t>(i)] - interface.reference), i);
   std::ranges::sort(order);
-  const bool stands = statics_alone(run.built->plan);
-  if (!stands && frames.size() < 2) return {};
-  Vector widest = Vector::Zero(interface.batch.points);
-  for (const Frame& frame : frames) widest = widest.cwiseMax(frame.opening.head(interface.batch.points));
+  const auto gaps = [&](const Frame& frame) { return Vector(frame.opening.segment(first, points)); };
+  const auto pressures = [&](const Frame& frame) { return Vector(frame.pressure.segment(first, points)); };
+  const std::string of = of_base(*run.built, number);
   Chart gap = profile("rest_gap", "Gap along the base",
                       "At the end of the run, compared with the widest gap of each point in the frames of the animation.", "Gap", "m");
   Chart pressure = profile("rest_pressure", "Pressure along the base", "At the beginning and at the end of the run.", "Pressure", "Pa");
-  if (stands) {
+  for (Chart* each : {&gap, &pressure}) each->id = id_of(each->id, number), each->title += of;
+  if (statics_alone(run.built->plan)) {
     gap.caption = pressure.caption = "Under the constant loads.";
-    gap.curves = {along("gap", order, frames.back().opening.cwiseMax(0), false)};
-    pressure.curves = {along("pressure", order, frames.back().pressure, false)};
-    return {std::move(gap), std::move(pressure)};
+    gap.curves = {along("gap", order, gaps(frames.back()).cwiseMax(0), false)};
+    pressure.curves = {along("pressure", order, pressures(frames.back()), false)};
+  } else {
+    Vector widest = Vector::Zero(points);
+    for (const Frame& frame : frames) widest = widest.cwiseMax(gaps(frame));
+    gap.curves = {along("at the end", order, gaps(frames.back()).cwiseMax(0), false), along("widest", order, widest, true)};
+    pressure.curves = {along("at the end", order, pressures(frames.back()), false),
+                       along("at the beginning", order, pressures(frames.front()), true)};
   }
-  gap.curves = {along("at the end", order, frames.back().opening.cwiseMax(0), false), along("widest", order, widest, true)};
-  pressure.curves = {along("at the end", order, frames.back().pressure, false),
-                     along("at the beginning", order, frames.front().pressure, true)};
-  return {std::move(gap), std::move(pressure)};
+  charts.push_back(std::move(gap));
+  charts.push_back(std::move(pressure));
+}
+
+std::vector<Chart> rest_charts(const ReportRun& run) {
+  const Model& model = run.built->model;
+  const std::vector<Frame>& frames = run.result->frames;
+  const bool stands = statics_alone(run.built->plan);
+  if (model.space.dimension == 3 || model.interfaces.empty() || frames.empty() || (!stands && frames.size() < 2)) return {};
+  std::vector<Chart> charts;
+  Index first = 0;  // of its points
+  for (std::size_t k = 0; k < bases_shown(*run.built); ++k) {
+    const Interface& interface = model.interfaces[k];
+    const Index points = interface.batch.points;
+    if (!interface.footprint) add_rest_charts(run, k, first, charts);  // one point has no profile
+    first += points;
+  }
+  return charts;
 }
 
 std::vector<Chart> safety_charts(const std::vector<ReportRun>& runs) {
-  const auto chart = [&](const char* id, const char* title, const char* caption, BaseHistory which) {
-    return safety_chart(id, title, caption, which, runs);
-  };
-  return {chart("eccentricity", "Eccentricity of the resultant",
-                "Position of the resultant, divided by the width of the base; at 0.5 the base stands on its edge.",
-                BaseHistory::eccentricity_1),
-          chart("overturning_safety", "Safety against overturning", "Stabilising over driving moment about the toe; drawn up to 10.",
-                BaseHistory::overturning_safety),
-          chart("sliding_safety", "Safety against sliding", "Friction and cohesion over base shear; drawn up to 10.",
-                BaseHistory::sliding_safety)};
+  std::vector<Chart> charts;
+  if (runs.empty()) return charts;
+  const BuiltCase& built = *runs.front().built;
+  for (std::size_t k = 0; k < bases_shown(built); ++k) {
+    const std::string of = built.facts.empty() ? "" : of_base(built, k);
+    const auto add = [&](const char* id, const char* title, const char* caption, BaseHistory which) {
+      charts.push_back(safety_chart(id, title + of, caption, which, k, runs));
+    };
+    add("eccentricity", "Eccentricity of the resultant",
+        "Position of the resultant, divided by the width of the base; at 0.5 the base stands on its edge.", BaseHistory::eccentricity_1);
+    add("overturning_safety", "Safety against overturning", "Stabilising over driving moment about the toe; drawn up to 10.",
+        BaseHistory::overturning_safety);
+    add("sliding_safety", "Safety against sliding", "Friction and cohesion over base shear; drawn up to 10.", BaseHistory::sliding_safety);
+  }
+  return charts;
 }
 
 }  // namespace uplift
