@@ -203,6 +203,7 @@ Model make_model(const Case& read, const RunSpec& spec, const std::vector<double
   if (spec.damping) builder.set_damping(spec.damping->made);
   built.beams = names.beams;
   builder.set_home(home_of(*bulk_solver(read)));
+  if (names.solids) names.solids->forget_edges();  // before the model is largest
   return builder.finish();
 }
 

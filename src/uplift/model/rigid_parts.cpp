@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -30,27 +31,41 @@ class Sets {
   std::vector<int> parent_;
 };
 
-using Side = std::pair<std::array<int, 4>, int>;  // corners, ascending; element
-
-/// Solids with a common side are merged.
+/// Solids with a common side are merged. A side is looked at with its lowest corner, all of whose solids are at hand: there is never a list
+/// of all sides.
 void merge_solids(const Model& model, Sets& sets) {
-  std::vector<Side> sides;
-  for (int e = 0; e < static_cast<int>(model.elements.size()); ++e) {
-    const Element& solid = *model.elements[e];
-    if (solid.continuum() == nullptr) continue;
-    const auto nodes = solid.nodes();
-    const CellInfo& type = info(solid.cell());
-    for (int s = 0; s < static_cast<int>(type.sides.size()); ++s) {
-      std::array<int, 4> corners{-1, -1, -1, -1};
-      const auto side = side_of(solid.cell(), s);
-      for (int c = 0; c < info(type.sides[s]).corners; ++c) corners[c] = nodes[side[c]];
-      std::ranges::sort(corners);
-      sides.emplace_back(corners, e);
+  std::vector<int> start(model.nodes.size() + 1, 0), around;  // solids around each node
+  const auto each_corner = [&](const auto& take) {            // node, element
+    for (int e = 0; e < static_cast<int>(model.elements.size()); ++e) {
+      const Element& solid = *model.elements[e];
+      if (solid.continuum() == nullptr) continue;
+      for (const int node : solid.nodes().first(info(solid.cell()).corners)) take(node, e);
     }
+  };
+  each_corner([&](int node, int) { ++start[node + 1]; });
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  around.resize(start.back());
+  std::vector<int> next(start.begin(), start.end() - 1);
+  each_corner([&](int node, int element) { around[next[node]++] = element; });
+  std::vector<std::pair<std::array<int, 4>, int>> sides;  // corners, ascending; element
+  for (int node = 0; node < static_cast<int>(model.nodes.size()); ++node) {
+    sides.clear();
+    for (int i = start[node]; i < start[node + 1]; ++i) {
+      const Element& solid = *model.elements[around[i]];
+      const CellInfo& type = info(solid.cell());
+      for (int s = 0; s < static_cast<int>(type.sides.size()); ++s) {
+        const auto side = side_of(solid.cell(), s);
+        std::array<int, 4> corners;
+        corners.fill(std::numeric_limits<int>::max());
+        for (int c = 0; c < info(type.sides[s]).corners; ++c) corners[c] = solid.nodes()[side[c]];
+        std::ranges::sort(corners);
+        if (corners[0] == node) sides.emplace_back(corners, around[i]);
+      }
+    }
+    std::ranges::sort(sides);
+    for (std::size_t i = 1; i < sides.size(); ++i)
+      if (sides[i].first == sides[i - 1].first) sets.merge(sides[i].second, sides[i - 1].second);
   }
-  std::ranges::sort(sides);
-  for (std::size_t i = 1; i < sides.size(); ++i)
-    if (sides[i].first == sides[i - 1].first) sets.merge(sides[i].second, sides[i - 1].second);
 }
 
 /// Beams with a common node are merged.
@@ -73,6 +88,7 @@ std::vector<RigidPart> rigid_parts(const Model& model) {
   merge_beams(model, sets);
   std::vector<RigidPart> parts;
   std::map<int, std::size_t> number;
+  std::vector<std::size_t> last(model.nodes.size());  // part that each node was put into last, from 1 on: few are put there twice
   for (int e = 0; e < static_cast<int>(model.elements.size()); ++e) {
     const Element& element = *model.elements[e];
     const SolidSection* solid = element.continuum();
@@ -80,7 +96,8 @@ std::vector<RigidPart> rigid_parts(const Model& model) {
     const auto [at, fresh] = number.try_emplace(sets.root(e), parts.size());
     if (fresh) parts.emplace_back();
     RigidPart& part = parts[at->second];
-    part.nodes.insert(part.nodes.end(), element.nodes().begin(), element.nodes().end());
+    for (const int node : element.nodes())
+      if (std::exchange(last[node], at->second + 1) != at->second + 1) part.nodes.push_back(node);
     part.beams = solid == nullptr;
     part.massive = part.massive || (solid != nullptr && has_mass(*solid));
   }

@@ -22,13 +22,12 @@ void add_floors(const Case& read, BuiltCase& built) {
   RunPlan& plan = built.plan;
   plan.floor_bands = output.floor_bands;
   if (output.floors.empty()) return;
-  Names nodes("node"), floors("floor");
-  for (const Node& node : built.model.nodes) nodes.add(node.name, {}, {});
+  Names floors("floor");
   for (const CaseFloor& asked : output.floors) {
     floors.add(asked.name);
     FloorRequest floor;
     floor.name = asked.name.name;
-    floor.node = asked_node(asked, "floor " + floor.name, nodes, built);
+    floor.node = asked_node(asked, "floor " + floor.name, built);
     floor.direction = asked.direction;
     floor.dampings = asked.dampings;
     floor.frequencies = asked.frequencies;

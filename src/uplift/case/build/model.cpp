@@ -167,16 +167,18 @@ void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
   for (const CaseSolids::Solid& solid : names.solids->solids()) cells += solid.cells.size();
   const auto with_few_more = [](std::size_t count) { return count + count / 16; };  // beams, dashpots of faces
   builder.reserve(with_few_more(mesh.nodes.size()), with_few_more(cells));
-  names.nodes.reserve(with_few_more(mesh.nodes.size()));
   names.positions.reserve(names.positions.size() + with_few_more(mesh.nodes.size()));
+  names.nodes.add_numbered(
+      "mesh.", static_cast<int>(mesh.nodes.size()), [from = read.mesh](int node) { return from->mesh.number(node); }, table.where(),
+      table.path());
   auto coordinates = std::make_shared<std::vector<Vec3>>();
   coordinates->reserve(names.positions.size() + mesh.nodes.size());
   coordinates->assign(names.positions.size(), Vec3::Zero());
   for (int i = 0; i < static_cast<int>(mesh.nodes.size()); ++i) {
-    const std::string number = fmt::format("mesh.{}", mesh.number(i));
+    const int node = names.first_of_mesh + i;
+    const std::string number = names.nodes[node];
     const auto name = named.find(i);
     coordinates->push_back(mesh.nodes[static_cast<std::size_t>(i)]);
-    const int node = names.nodes.add(number, table.where(), table.path());
     names.positions.emplace_back(coordinates->back());
     if (name == named.end()) {
       builder.add_node(number, names.positions.back(), table.where());

@@ -181,15 +181,14 @@ int nearest_node(const Place& place, const std::string& what, BuiltCase& built) 
   return nearest;
 }
 
-Request asked_request(const CaseHistory& history, const Case& read, BuiltCase& built, const CaseNames& names, const Names& nodes,
-                      const Names& interfaces) {
+Request asked_request(const CaseHistory& history, const Case& read, BuiltCase& built, const CaseNames& names, const Names& interfaces) {
   const std::string name = history.name ? history.name->name : "";
   if (history.beam || history.level || history.group) return force_request(history, built, names);
   const int given = history.node.has_value() + history.at.has_value() + history.interface.has_value();
   if (given != 1)
     fail(history, "", "exactly one of node, at, interface, beam, level and group", given == 0 ? "none" : fmt::format("{}", given));
   if (!history.interface) {
-    const int node = asked_node(history, history.quantity.name, nodes, built);
+    const int node = asked_node(history, history.quantity.name, built);
     if (history.below || is_constraint_force(history.quantity.name)) return force_request(history, built, names, node);
     return node_request(built.model, node, find_quantity(node_quantities(built.model.space), history, "a node"), name);
   }
@@ -212,11 +211,13 @@ bool moves(const Model& model, int full_unknown) {
                      [&](const PrescribedMotion& motion) { return motion.shape[full_unknown] != 0; });
 }
 
-int asked_node(const NodeAsked& asked, const std::string& what, const Names& nodes, BuiltCase& built) {
+int asked_node(const NodeAsked& asked, const std::string& what, BuiltCase& built) {
   if (asked.node.has_value() == asked.at.has_value()) fail(asked, "", "exactly one of node and at", asked.at ? "both" : "none");
   if (asked.at) return nearest_node(*asked.at, what, built);
-  const int node = built.model.find_node(asked.node->name);
-  return node < 0 ? nodes.find(*asked.node) : node;  // which says what is near
+  if (const int node = built.model.find_node(asked.node->name); node >= 0) return node;
+  Names nodes("node");  // which say what is near
+  for (const Node& node : built.model.nodes) nodes.add(node.name, {}, {});
+  return nodes.find(*asked.node);
 }
 
 void check_columns(const std::vector<NameUsed>& names, const std::vector<Request>& requests) {
@@ -246,13 +247,12 @@ void add_requests(const Case& read, const CaseNames& names, BuiltCase& built) {
         requests.back().interface = static_cast<int>(k);
       }
   }
-  Names nodes("node"), interfaces("interface"), columns("column");
-  for (const Node& node : model.nodes) nodes.add(node.name, {}, {});
+  Names interfaces("interface"), columns("column");
   for (const Interface& interface : model.interfaces) interfaces.add(interface.name, {}, {});
   for (const Request& request : requests) columns.add(request.name, {}, {});
   for (const CaseHistory& history : output.histories) {
     if (history.name) check_name(history.name->name, "the column", history.name->where(), history.name->path());
-    Request request = asked_request(history, read, built, names, nodes, interfaces);
+    Request request = asked_request(history, read, built, names, interfaces);
     if (!has_quantity(built, request)) continue;
     const bool there = std::any_of(requests.begin(), requests.end(), [&](const Request& other) { return other.name == request.name; });
     if (there && !history.name) continue;  // one of the automatic ones

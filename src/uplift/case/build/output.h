@@ -18,7 +18,7 @@ inline constexpr std::string_view combined_top = "top", combined_top_up = "top u
 /// The floors whose spectra the case asks for. Sets plan.floors and plan.floor_bands; uses the plan's stages.
 void add_floors(const Case&, BuiltCase&);
 /// The node of `node`, or the one nearest to `at`, which is noted for `what`; InputError when neither or both are given.
-int asked_node(const NodeAsked& asked, const std::string& what, const Names& nodes, BuiltCase& built);
+int asked_node(const NodeAsked& asked, const std::string& what, BuiltCase& built);
 /// Throws InputError when a list of texts names a column that there is not.
 void check_columns(const std::vector<NameUsed>& names, const std::vector<Request>& requests);
 /// True when the full unknown can move: it follows a free unknown or a prescribed motion.

@@ -139,24 +139,26 @@ std::shared_ptr<const CaseMesh> mesh_of_case(const Case& read, const MeshReader&
   return made;
 }
 
-CaseSolids::CaseSolids(const CaseInput& input, const CaseMesh& from)
-    : mesh_(&from.mesh), free_(&from.free), sides_(from.mesh, full_cells(from.mesh)) {
-  const std::vector<CellId>& cells = sides_.cells();
-  solid_of_.assign(cells.size(), -1);
+CaseSolids::CaseSolids(const CaseInput& input, const CaseMesh& from) : mesh_(&from.mesh), free_(&from.free), cells_(full_cells(from.mesh)) {
+  solid_of_.assign(cells_.size(), -1);
   for (const CaseElement& solid : input.elements_at(ElementPlace::cells)) add(solid);
   const auto bare = std::ranges::find(solid_of_, -1);
   if (bare != solid_of_.end())
     throw InputError(input.mesh->where(), "solid", "a [[solid]] for every cell of the mesh",
-                     "none for " + owner_of(*mesh_, cells[static_cast<std::size_t>(bare - solid_of_.begin())]));
+                     "none for " + owner_of(*mesh_, cells_[static_cast<std::size_t>(bare - solid_of_.begin())]));
+}
+
+const Sides& CaseSolids::sides() const {
+  if (sides_ == nullptr) sides_ = std::make_unique<const Sides>(*mesh_, cells_);
+  return *sides_;
 }
 
 void CaseSolids::add(const CaseElement& solid) {
-  const std::vector<CellId>& cells = sides_.cells();
   const Group& group = group_named(*mesh_, *solid.group, "a group of cells");
   if (group.dimension != mesh_->dimension || group.cells.empty())
     fail(*solid.group, "a group of cells", dimension_word(*mesh_, group.dimension));
   for (const CellId cell : group.cells) {
-    int& solid_here = solid_of_[static_cast<std::size_t>(std::ranges::lower_bound(cells, cell) - cells.begin())];
+    int& solid_here = solid_of_[static_cast<std::size_t>(std::ranges::lower_bound(cells_, cell) - cells_.begin())];
     if (solid_here >= 0)
       fail(*solid.group, "cells without another solid",
            fmt::format("{}, which belongs to the solid {} too", describe_cell(*mesh_, cell), in_quotes(solids_[at(solid_here)].group())));
@@ -168,27 +170,27 @@ void CaseSolids::add(const CaseElement& solid) {
 }
 
 const CaseSolids::Solid& CaseSolids::of(CellId cell) const {
-  const auto found = std::ranges::lower_bound(sides_.cells(), cell);
-  assert(found != sides_.cells().end() && *found == cell);
-  return solids_[at(solid_of_[static_cast<std::size_t>(found - sides_.cells().begin())])];
+  const auto found = std::ranges::lower_bound(cells_, cell);
+  assert(found != cells_.end() && *found == cell);
+  return solids_[at(solid_of_[static_cast<std::size_t>(found - cells_.begin())])];
 }
 
 const CaseSolids::Solid* CaseSolids::beside(CellId edge) const {
-  const int side = sides_.find(mesh_->type(edge), mesh_->cell(edge));
+  const int side = sides().find(mesh_->type(edge), mesh_->cell(edge));
   return side < 0 ? nullptr : &solids_[at(solid_of_[at(side / Sides::stride)])];
 }
 
 std::vector<int> CaseSolids::outward_nodes(CellId edge) const {
-  const int side = sides_.find(mesh_->type(edge), mesh_->cell(edge));
+  const int side = sides().find(mesh_->type(edge), mesh_->cell(edge));
   std::vector<int> nodes;
-  if (side >= 0 && sides_.twin(side) < 0) sides_.nodes_of(*mesh_, side, nodes);
+  if (side >= 0 && sides().twin(side) < 0) sides().nodes_of(*mesh_, side, nodes);
   return nodes;
 }
 
 Vec3 CaseSolids::centre_beside(CellId edge) const {
-  const int side = sides_.find(mesh_->type(edge), mesh_->cell(edge));
+  const int side = sides().find(mesh_->type(edge), mesh_->cell(edge));
   assert(side >= 0);
-  const std::span<const int> nodes = mesh_->cell(sides_.cells()[at(side / Sides::stride)]);
+  const std::span<const int> nodes = mesh_->cell(cells_[at(side / Sides::stride)]);
   Vec3 sum = Vec3::Zero();
   for (const int node : nodes) sum += mesh_->nodes[at(node)];
   return sum / static_cast<double>(nodes.size());

@@ -60,6 +60,8 @@ class CaseSolids {
   const std::vector<CellId>& edges(const NameUsed& group) const;
   /// The surface beside cuts that has this name; null: none.
   const std::vector<FreeFace>* free_surface(const std::string& name) const;
+  /// Takes back what has been made to find edges, which is as large as the mesh; it is made again when an edge is asked for.
+  void forget_edges() const { sides_.reset(); }
 
  private:
   /// The cells of one table.
@@ -67,9 +69,12 @@ class CaseSolids {
 
   const Mesh* mesh_;
   const std::map<std::string, std::vector<FreeFace>>* free_;
+  const Sides& sides() const;
+
   std::vector<Solid> solids_;
-  Sides sides_;
-  std::vector<int> solid_of_;  // of the cells of sides_
+  std::vector<CellId> cells_;
+  std::vector<int> solid_of_;                   // of the cells
+  mutable std::unique_ptr<const Sides> sides_;  // of the cells; null until it is asked for
 };
 
 /// Uniform traction on edges: nodes of the mesh with the integrals of their shape functions [m2].
