@@ -54,8 +54,8 @@ Model model_of(const TwoBoxesPlan& plan) {
   TwoBoxes boxes = two_boxes(plan);
   Model model;
   const Index n = boxes.stiffness.rows();
-  model.reduction.resize(n, n);
-  model.reduction.setIdentity();
+  model.expansion.resize(n, n);
+  model.expansion.setIdentity();
   model.damping.resize(n, n);
   Interface base;
   base.batch.components = plan.slips ? 2 : 1;

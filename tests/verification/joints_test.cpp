@@ -28,7 +28,7 @@ Matrix normal_block(const std::vector<Vec2>& nodes, int per_element, LineQuadrat
   builder.add_interface(support::linear_interface("joint", line_points(joint, here), {k}), here);
   const Model model = builder.finish();
   const Interface& face = model.interfaces[0];
-  const Matrix b = face.b * model.reduction.transpose();  // back on the full unknowns: here T only drops some
+  const Matrix b = face.b * model.expansion;  // back on the full unknowns: here T only drops some
   const Matrix full = b.transpose() * (k * face.area).asDiagonal() * b;
   Matrix block(nodes.size(), nodes.size());  // (n . u) of the nodes
   for (std::size_t i = 0; i < nodes.size(); ++i)

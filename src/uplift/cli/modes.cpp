@@ -17,7 +17,7 @@ void print_modes(const Model& model, const std::vector<Mode>& found, std::string
   std::vector<std::vector<std::string>> rows{{"mode", "frequency [Hz]", "period [s]", "mass in x [%]", "mass in y [%]"}};
   if (model.space.dimension == 3) rows.front().emplace_back("mass in z [%]");
   for (std::size_t i = 0; i < found.size(); ++i) {
-    const Vector shape = model.reduction * found[i].shape;
+    const Vector shape = model.expand(found[i].shape);
     const double frequency = found[i].frequency;
     rows.push_back(
         {fmt::format("{}", i + 1), fmt::format("{:.6g}", frequency), frequency > 0 ? fmt::format("{:.6g}", 1 / frequency) : "rigid motion",

@@ -15,7 +15,7 @@ PlasticBulk::PlasticBulk(const Model& model) : model_(model) {
       for (const int node : element->nodes())
         for (int c = 0; c < element->unknowns_per_node(); ++c) index_.push_back(model.space.unknowns() * node + c);
     }
-  if (any()) spread_ = model.expansion.cwiseAbs();
+  if (any()) spread_ = model.expansion.cwiseAbs(), reduction_ = model.reduction();
 }
 
 void PlasticBulk::of_element(const One& one, const Vector& full, Vector& result) const {
@@ -112,7 +112,7 @@ Sparse PlasticBulk::softening(const Vector& displacement, const Update& step, co
   }
   Sparse assembled(full.size(), full.size());
   assembled.setFromTriplets(entries.begin(), entries.end());
-  return model_.expansion * assembled * model_.reduction;
+  return model_.expansion * assembled * reduction_;
 }
 
 double PlasticBulk::energy(const Vector& displacement, MotionInstant at, const PlasticState& state) const {

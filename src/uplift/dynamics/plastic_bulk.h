@@ -68,7 +68,7 @@ class PlasticBulk {
   std::vector<One> elements_;
   std::vector<int> index_;
   std::size_t history_ = 0, parts_ = 0;  // their numbers
-  Sparse spread_;                        // |T|^T: free x full
+  Sparse spread_, reduction_;            // |T|^T: free x full; T
   /// Room for one element at a time. An object of this class serves one thread.
   struct Scratch {
     ElementScratch element;

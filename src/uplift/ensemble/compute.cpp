@@ -32,7 +32,7 @@ void identify(const Study& study, const RunRequest& request, StudyResult& result
 /// The memory of what ReducedStart has in other coordinates.
 void forget_matrices(Model& model) {
   ModelMatrices().swap(model);
-  Sparse().swap(model.reduction), Sparse().swap(model.expansion);
+  Sparse().swap(model.expansion);
   for (Interface& interface : model.interfaces) Sparse().swap(interface.b);
 }
 

@@ -126,7 +126,7 @@ void ModelBuilder::eliminate(Model& model, Matrix& motion_shapes) const {
     model.assembly.links.push_back({a, b, list.add(row, -1, what, ", or give the beam its area A", names, link.where)});
   }
   model.assembly.constraints = list.matrix(unknowns);
-  model.reduction = elimination.reduction();
+  model.expansion = elimination.reduction().transpose();
   model.kept = elimination.kept();
   motion_shapes = elimination.motions();
 }

@@ -20,6 +20,22 @@ Vector times_translation(const ElementSum& mass, Space space, const Vec3& direct
   return full.col(0);
 }
 
+/// Some rows of a matrix, ascending.
+Sparse chosen_rows(const Sparse& matrix, const std::vector<int>& rows) {
+  std::vector<int> place(static_cast<std::size_t>(matrix.rows()), -1);
+  for (std::size_t c = 0; c < rows.size(); ++c) place[static_cast<std::size_t>(rows[c])] = static_cast<int>(c);
+  const std::span<const int> of_entries(matrix.innerIndexPtr(), static_cast<std::size_t>(matrix.nonZeros()));
+  Sparse made(std::ssize(rows), matrix.cols());
+  made.reserve(std::ranges::count_if(of_entries, [&](int row) { return place[static_cast<std::size_t>(row)] >= 0; }));
+  for (Index column = 0; column < matrix.cols(); ++column) {
+    made.startVec(column);
+    for (Sparse::InnerIterator entry(matrix, column); entry; ++entry)
+      if (const int row = place[static_cast<std::size_t>(entry.row())]; row >= 0) made.insertBack(row, column) = entry.value();
+  }
+  made.finalize();
+  return made;
+}
+
 }  // namespace
 
 void ModelBuilder::assemble(Model& model) const {
@@ -84,7 +100,7 @@ void ModelBuilder::make_drives(Model& model, const Matrix& motion_shapes) const 
   const auto add = [&](std::string name, Vector pattern, std::shared_ptr<const TimeFunction> function, bool dead) {
     const bool constant = function->is_one();
     model.time_loads.push_back(
-        {std::move(name), model.reduction.transpose() * pattern, std::move(function), TimeLoad::Order::value, dead, constant});
+        {std::move(name), model.expansion * pattern, std::move(function), TimeLoad::Order::value, dead, constant});
     model.assembly.loads.push_back(std::move(pattern));
   };
   if (!gravity_.isZero()) add("gravity", times_translation(mass, space_, gravity_, unknowns), one, true);
@@ -101,7 +117,7 @@ void ModelBuilder::make_drives(Model& model, const Matrix& motion_shapes) const 
   for (const TableOfLoads& table : tables_) {
     Sparse pattern(unknowns, table.functions);
     pattern.setFromTriplets(table.pattern.begin(), table.pattern.end());
-    model.time_load_tables.push_back({table.name, model.reduction.transpose() * pattern, table.values});
+    model.time_load_tables.push_back({table.name, model.expansion * pattern, table.values});
     model.assembly.time_load_tables.push_back(std::move(pattern));
   }
   make_motions(model, motion_shapes);
@@ -119,7 +135,7 @@ void ModelBuilder::make_motions(Model& model, const Matrix& shapes) const {
     const std::pair<const Matrix*, TimeLoad::Order> parts[] = {
         {&elastic, TimeLoad::Order::value}, {&viscous, TimeLoad::Order::rate}, {&inertial, TimeLoad::Order::acceleration}};
     for (const auto& [force_of, order] : parts) {
-      Vector force = -(model.reduction.transpose() * force_of->col(k));
+      Vector force = -(model.expansion * force_of->col(k));
       if (force.isZero(0)) continue;
       model.time_loads.push_back({motion.name, std::move(force), motion.function, order, false, false, true});
       model.assembly.loads.emplace_back();
@@ -130,13 +146,12 @@ void ModelBuilder::make_motions(Model& model, const Matrix& shapes) const {
 /// The columns of T that anything resists; a load on another one is refused.
 std::vector<int> ModelBuilder::resisted(const Model& model) const {
   std::vector<char> mask(static_cast<std::size_t>(model.free()), 0);
-  const Sparse expansion = model.reduction.transpose();
   for (Matrix* Local::*wanted : {&Local::stiffness, &Local::mass, &Local::damping}) {
-    const Vector diagonal = sum(wanted).size_of_diagonal(expansion);
+    const Vector diagonal = sum(wanted).size_of_diagonal(model.expansion);
     for (Index i = 0; i < diagonal.size(); ++i)
       if (diagonal[i] != 0) mask[i] = 1;
   }
-  const Sparse b = model.assembly.b * model.reduction;
+  const Sparse b = model.assembly.b * model.reduction();
   for (int i = 0; i < model.free(); ++i)
     for (Sparse::InnerIterator entry(b, i); entry; ++entry)
       if (entry.value() != 0) mask[i] = 1;
@@ -148,7 +163,7 @@ std::vector<int> ModelBuilder::resisted(const Model& model) const {
     }
     for (const Load& load : loads_)
       for (const auto& [unknown, value] : load.pattern)
-        if (value != 0 && model.reduction.coeff(unknown, i) != 0)
+        if (value != 0 && model.expansion.coeff(i, unknown) != 0)
           throw InputError(load.where, load.name, "a load on something that resists",
                            fmt::format("a load on {}, which nothing holds", name_of(unknown)));
   }
@@ -165,18 +180,16 @@ Model ModelBuilder::finish() {
   if (!keeps_tangents_) drop_dead_tangents(model, motion_shapes);
   place_interfaces(model);
 
-  std::vector<int> columns = resisted(model);
-  if (static_cast<int>(columns.size()) < model.free()) {
-    Sparse select(model.free(), static_cast<Index>(columns.size()));
-    for (Index c = 0; c < select.cols(); ++c) select.insert(columns[c], c) = 1;
-    model.reduction = (model.reduction * select).eval();
+  {
+    const std::vector<int> columns = resisted(model);
+    if (static_cast<int>(columns.size()) < model.free()) chosen_rows(model.expansion, columns).swap(model.expansion);
+    std::vector<int> kept(columns.size());
+    for (std::size_t c = 0; c < columns.size(); ++c) kept[c] = model.kept[columns[c]];
+    kept.swap(model.kept);
   }
-  model.expansion = model.reduction.transpose();
   assemble(model);
-  for (std::size_t c = 0; c < columns.size(); ++c) columns[c] = model.kept[columns[c]];
-  model.kept = std::move(columns);
   Index first = 0;
-  const Sparse b = model.assembly.b * model.reduction;
+  const Sparse b = model.assembly.b * model.reduction();
   const SparseRows b_rows = b;
   for (Interface& face : model.interfaces) {
     face.b = b_rows.middleRows(first, face.rows());

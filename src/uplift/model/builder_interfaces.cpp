@@ -37,9 +37,9 @@ void ModelBuilder::drop_dead_tangents(const Model& model, const Matrix& motion_s
         for (const bool upper : {true, false})
           add_side(space_, nodes_, point, upper, {local_axis(space_, point.normal.normalized(), c)}, row, entries);
     }
-    Sparse rows(row, model.reduction.rows());
+    Sparse rows(row, model.full_unknowns());
     rows.setFromTriplets(entries.begin(), entries.end());
-    const Sparse free_rows = rows * model.reduction;
+    const Sparse free_rows = rows * model.reduction();
     const Matrix moved = rows * motion_shapes;
     const bool alive = (free_rows.nonZeros() > 0 && free_rows.coeffs().abs().maxCoeff() > 1e-14) ||
                        (moved.size() > 0 && moved.cwiseAbs().maxCoeff() > 1e-14);

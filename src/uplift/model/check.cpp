@@ -79,7 +79,7 @@ Vec3 turn_of(const Model& model, const Motions& motions, const std::vector<int>&
 }  // namespace
 
 std::string describe_motion(const Model& model, const Vector& motion) {
-  const Motions motions = motions_of(model, model.reduction * motion);
+  const Motions motions = motions_of(model, model.expand(motion));
   const auto& [u, theta] = motions;
   double size = 1e-3, largest = 0;
   for (const Node& node : model.nodes) size = std::max(size, (node.position - model.nodes.front().position).norm());
@@ -126,7 +126,7 @@ Where place_of_interface(const Model& model, const Where& other) {
 bool moves_interfaces(const Model& model, const Vector& motion) {
   Vector touched = Vector::Zero(model.free());
   for (const Interface& interface : model.interfaces) touched += interface.b.cwiseAbs().transpose() * Vector::Ones(interface.b.rows());
-  const Vector by_interfaces = model.reduction.cwiseAbs() * touched, moved = (model.reduction * motion).cwiseAbs();
+  const Vector by_interfaces = model.reduction().cwiseAbs() * touched, moved = model.expand(motion).cwiseAbs();
   const double least = 1e-6 * moved.maxCoeff();
   const int unknowns = model.space.unknowns();
   for (Index first = 0; first + unknowns <= moved.size(); first += unknowns)
@@ -154,7 +154,7 @@ void check_static(const Model& model, const std::function<Where(const std::strin
   const Vector motion = unresisted_motion(model, Resistance::stiffness);
   if (motion.size() == 0) return;
   const std::string loose = describe_motion(model, motion);
-  const std::vector<Vec3> moved = motions_of(model, model.reduction * motion).translation;
+  const std::vector<Vec3> moved = motions_of(model, model.expand(motion)).translation;
   double largest = 0;
   for (const Vec3& each : moved) largest = std::max(largest, each.norm());
   const auto first = std::ranges::find_if(moved, [&](const Vec3& each) { return each.norm() >= 0.5 * largest; });

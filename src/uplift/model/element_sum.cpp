@@ -29,10 +29,10 @@ Lists lists_of_members(const Lists& lists, Index bound) {
   return turned;
 }
 
-/// T^T A_e T of one element: its free unknowns, ascending, and the matrix on them.
+/// T^T A_e T of one element: its free unknowns, ascending, and the matrix on them. `sizes`: |T| in the place of T.
 class ReducedElement {
  public:
-  explicit ReducedElement(const Sparse& expansion) : expansion_(expansion) {}
+  explicit ReducedElement(const Sparse& expansion, bool sizes = false) : expansion_(expansion), sizes_(sizes) {}
   void reduce(std::span<const int> full, const Matrix& local) {
     unknowns.clear();
     for (const int unknown : full)
@@ -43,7 +43,8 @@ class ReducedElement {
     for (std::size_t i = 0; i < full.size(); ++i) {
       parts_[i].clear();
       for (Sparse::InnerIterator entry(expansion_, full[i]); entry; ++entry)
-        parts_[i].emplace_back(std::ranges::lower_bound(unknowns, static_cast<int>(entry.row())) - unknowns.begin(), entry.value());
+        parts_[i].emplace_back(std::ranges::lower_bound(unknowns, static_cast<int>(entry.row())) - unknowns.begin(),
+                               sizes_ ? std::abs(entry.value()) : entry.value());
     }
     block.setZero(std::ssize(unknowns), std::ssize(unknowns));
     for (Index j = 0; j < local.cols(); ++j)
@@ -56,6 +57,7 @@ class ReducedElement {
 
  private:
   const Sparse& expansion_;
+  const bool sizes_;
   std::vector<std::vector<std::pair<Index, double>>> parts_;  // of T, for each unknown of the element
 };
 
@@ -142,8 +144,7 @@ Matrix ElementSum::times(const Matrix& x) const {
 
 Vector ElementSum::size_of_diagonal(const Sparse& expansion) const {
   Vector diagonal = Vector::Zero(expansion.rows());
-  const Sparse sizes = expansion.cwiseAbs();
-  ReducedElement reduced(sizes);
+  ReducedElement reduced(expansion, true);
   each_element([&](std::span<const int> full, const Matrix& local) {
     reduced.reduce(full, local.cwiseAbs());
     diagonal(reduced.unknowns) += reduced.block.diagonal();

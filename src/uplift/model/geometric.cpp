@@ -94,7 +94,7 @@ Vector constraint_forces(const Model& model, const State& state) {
 }
 
 Sparse geometric_stiffness(const Model& model, const State& state) {
-  return geometric_stiffness(model, state, model.reduction);
+  return geometric_stiffness(model, state, model.reduction());
 }
 
 Sparse geometric_stiffness(const Model& model, const State& state, const Sparse& reduction) {

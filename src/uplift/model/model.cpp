@@ -41,8 +41,18 @@ double Model::full(int full_unknown, const Vector& q, int derivative, MotionInst
   return value;
 }
 
+Vector Model::expand(const Vector& q) const {
+  Vector full(full_unknowns());
+  for (Index i = 0; i < full.size(); ++i) {
+    double sum = 0;
+    for (Sparse::InnerIterator entry(expansion, i); entry; ++entry) sum += entry.value() * q[entry.row()];
+    full[i] = sum;
+  }
+  return full;
+}
+
 Vector Model::full(const Vector& q, int derivative, MotionInstant at) const {
-  Vector value = reduction * q;
+  Vector value = expand(q);
   for (const PrescribedMotion& motion : motions) value += motion.shape * (at.share * derivative_of(*motion.function, derivative, at.time));
   return value;
 }

@@ -122,16 +122,17 @@ struct Model {
   std::vector<PrescribedMotion> motions;
   std::vector<GroundAcceleration> grounds;
 
-  Sparse reduction;                 // T: full x free
-  Sparse expansion;                 // T^T: column i is the row of T for full unknown i
+  Sparse expansion;                 // T^T, free x full: column i is the row of T for full unknown i
   Sparse stiffness, mass, damping;  // free x free; damping: Rayleigh, dashpots, modal
   // null: the matrices above are whole. Else stiffness and mass above hold their diagonals alone and damping nothing (model/matrix_sum.h)
   std::shared_ptr<const DistributedMatrices> distributed;
   std::vector<int> kept;  // full unknown that each free unknown is; empty: a free unknown is no full one (is_reduced)
   Assembly assembly;
 
-  int free() const { return static_cast<int>(reduction.cols()); }
-  int full_unknowns() const { return static_cast<int>(reduction.rows()); }
+  int free() const { return static_cast<int>(expansion.rows()); }
+  int full_unknowns() const { return static_cast<int>(expansion.cols()); }
+  Sparse reduction() const { return expansion.transpose(); }       // T, made when it is asked for: in a large model it takes as much again
+  Vector expand(const Vector& q) const;                            // T q
   int at(int node, Dof dof) const { return space.at(node, dof); }  // full unknown
   int rows() const;                                                // interface rows, of all interfaces
   int find_node(std::string_view name) const;                      // -1 when absent

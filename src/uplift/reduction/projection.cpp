@@ -54,13 +54,10 @@ Sparse without_round_off(const Sparse& matrix) {
 
 /// All but the matrices.
 void project_all_else(Model& model, const Matrix& basis, const std::vector<int>* shown) {
-  if (shown != nullptr) {
+  if (shown != nullptr)
     shown_rows(model, basis, *shown).swap(model.expansion);
-    model.reduction = model.expansion.transpose();
-  } else {
-    model.reduction = as_sparse(model.reduction * basis);
-    model.expansion = model.reduction.transpose();
-  }
+  else
+    model.expansion = as_sparse(model.reduction() * basis).transpose();
   for (Interface& interface : model.interfaces) interface.b = as_sparse(interface.b * basis);
   project_loads(model, basis);
 }

@@ -90,7 +90,7 @@ std::string ReducedModel::statement(const std::string& file) const {
 }
 
 std::string matrices_hash(const Model& model) {
-  std::string all = hash(model.stiffness) + hash(model.mass) + hash(model.damping) + hash(model.reduction);
+  std::string all = hash(model.stiffness) + hash(model.mass) + hash(model.damping) + hash(model.reduction());
   for (const Interface& interface : model.interfaces) all += hash(interface.b);
   return sha256(all);
 }

@@ -141,7 +141,7 @@ bool Runner::second_order(const std::function<bool(const StaticProgress&)>& afte
 /// Solves a static stage with the geometric stiffness.
 bool Runner::solve_second_order(const Stage& stage, const std::function<bool(const StaticProgress&)>& after_step) {
   if (rest_ == nullptr) return solve(stage, geometric_.get(), &second_order_loads_, after_step);
-  const Sparse geometric = rest_->reduction.transpose() * run_.second_order->stiffness * rest_->reduction;
+  const Sparse reduction = rest_->reduction(), geometric = reduction.transpose() * run_.second_order->stiffness * reduction;
   const std::vector<TimeLoad> time_loads = second_order_loads(*rest_);
   return solve(stage, &geometric, &time_loads, after_step);
 }
@@ -169,7 +169,8 @@ bool Runner::stand_in_second_order(const Stage& stage, const Energies& before, E
 
 /// What follows from the second order for the free unknowns of the dynamic stages.
 void Runner::use_second_order() {
-  geometric_ = std::make_unique<Sparse>(model_.reduction.transpose() * run_.second_order->stiffness * model_.reduction);
+  const Sparse reduction = model_.reduction();
+  geometric_ = std::make_unique<Sparse>(reduction.transpose() * run_.second_order->stiffness * reduction);
   second_order_loads_ = second_order_loads(model_);
 }
 
@@ -177,7 +178,7 @@ void Runner::use_second_order() {
 std::vector<TimeLoad> Runner::second_order_loads(const Model& model) const {
   std::vector<TimeLoad> time_loads;
   for (const PrescribedMotion& motion : model.motions)
-    if (Vector force = -(model.reduction.transpose() * (run_.second_order->stiffness * motion.shape)); !force.isZero(0))
+    if (Vector force = -(model.expansion * (run_.second_order->stiffness * motion.shape)); !force.isZero(0))
       time_loads.push_back({motion.name, std::move(force), motion.function});
   return time_loads;
 }

@@ -83,7 +83,7 @@ ResolvedModes resolved_modes(const Model& model, const std::vector<Mode>& bonded
   std::array<double, 3> largest{};  // share along an axis
   std::array<ResolvedMode, 3> main;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    const Vector shape = model.reduction * all[k].shape;
+    const Vector shape = model.expand(all[k].shape);
     double most = 0;
     for (int axis = 0; axis < model.space.dimension; ++axis) {
       const auto along = static_cast<std::size_t>(axis);

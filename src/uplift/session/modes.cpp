@@ -20,7 +20,7 @@ void write_modes(JsonWriter& json, const Model& model, const std::vector<Mode>& 
   const Sparse mass = assembled(model, &Local::mass);
   json.begin_array();
   for (const Mode& mode : found) {
-    const Vector shape = model.reduction * mode.shape;
+    const Vector shape = model.expand(mode.shape);
     json.begin_object()
         .member("frequency", mode.frequency)
         .member("mass_share_x", mass_share(model, mass, shape, ux))

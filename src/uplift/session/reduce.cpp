@@ -161,7 +161,7 @@ void refuse_reduced(const ReducedModel& reduced, const Where& where, const Built
 }
 
 void ReducedStart::swap_matrices(Model& model) {
-  reduction.swap(model.reduction), expansion.swap(model.expansion);
+  expansion.swap(model.expansion);
   stiffness.swap(model.stiffness), mass.swap(model.mass), damping.swap(model.damping);
   rows.resize(model.interfaces.size());
   for (std::size_t k = 0; k < rows.size(); ++k) rows[k].swap(model.interfaces[k].b);

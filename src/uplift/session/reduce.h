@@ -38,12 +38,12 @@ void refuse_reduced(const ReducedModel& reduced, const Where& where, const Built
 /// What runs of a case with a reduced model share that differ by their motions alone: the state in which the static stages end, and the
 /// projected matrices.
 struct ReducedStart {
-  RunState state;                                         // in the coordinates of the basis
-  Matrix basis;                                           // free unknowns x coordinates, those of the state among them
-  Vector dead_force;                                      // of the static stages, free unknowns of the whole model [N, N m]
-  Vector velocity, displacement;                          // initial ones of the plan
-  Sparse reduction, expansion, stiffness, mass, damping;  // of the model; given to the run that goes on from here
-  std::vector<Sparse> rows;                               // of its interfaces
+  RunState state;                              // in the coordinates of the basis
+  Matrix basis;                                // free unknowns x coordinates, those of the state among them
+  Vector dead_force;                           // of the static stages, free unknowns of the whole model [N, N m]
+  Vector velocity, displacement;               // initial ones of the plan
+  Sparse expansion, stiffness, mass, damping;  // of the model; given to the run that goes on from here
+  std::vector<Sparse> rows;                    // of its interfaces
   /// Exchanges the matrices with those of a model: given to a run, and back from it.
   void swap_matrices(Model& model);
 };

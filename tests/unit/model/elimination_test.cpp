@@ -105,7 +105,7 @@ TEST(Elimination, MassAndDampingAreReducedWithTheSameMatrix) {
   Frame frame(false);
   frame.builder.set_damping({.alpha = 0.3, .beta = 1e-3, .modal = {}, .modal_count = 0});
   const Model model = frame.builder.finish();
-  const Matrix t = model.reduction;
+  const Matrix t = model.reduction();
   EXPECT_LE((t.transpose() * Matrix(assembled(model, &Local::mass)) * t - Matrix(model.mass)).norm(), 1e-12 * model.mass.norm());
   EXPECT_LE((0.3 * Matrix(model.mass) + 1e-3 * Matrix(model.stiffness) - Matrix(model.damping)).norm(), 1e-12 * model.damping.norm());
   for (int i = 0; i < model.free(); ++i) {  // a free unknown is one of the full ones

@@ -175,7 +175,7 @@ TEST(Mechanism, AMasslessFootIsFineUnderATractionLawWhereTheStructureHoldsIt) {
 /// summed of (the sum itself may be round-off).
 int dense_nullity(const Model& model) {
   if (model.free() == 0) return 0;
-  const Matrix t(model.reduction), full(assembled(model, &Local::stiffness));
+  const Matrix t(model.reduction()), full(assembled(model, &Local::stiffness));
   Matrix k = t.transpose() * full * t, size = t.cwiseAbs().transpose() * full.cwiseAbs() * t.cwiseAbs();
   for (const Interface& face : model.interfaces) {
     const int points = face.batch.points;

@@ -151,7 +151,7 @@ class Mobility {
     for (const auto& element : model.elements) add_lumped(*element, model.space, entries);
     Sparse full(model.full_unknowns(), model.full_unknowns());
     full.setFromTriplets(entries.begin(), entries.end());
-    Sparse mass = model.expansion * full * model.reduction;
+    Sparse mass = model.expansion * full * model.reduction();
     diagonal_ = mass.diagonal();
     // Unknowns without mass are left out; motions without mass get a little, by which they are known.
     std::vector<Triplet> more;
