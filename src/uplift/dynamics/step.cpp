@@ -107,15 +107,14 @@ void Stepper::force_at(double time, Vector& force) const {
 
 void Stepper::forces_at(const State& state, Vector& result) const {  // f - C v - K u - r - B^T p; r is that of now_
   force_at(state.time, result);
-  product_.resize(stage_.bulk.unknowns);
-  stage_.bulk.damping.multiply(state.velocity, product_);
-  result -= product_;
-  stage_.bulk.stiffness.multiply(state.displacement, product_);
-  result -= product_;
+  stage_.bulk.damping.multiply(state.velocity, work_);
+  result -= work_;
+  stage_.bulk.stiffness.multiply(state.displacement, work_);
+  result -= work_;
   if (newton_ != nullptr) result -= plastic_now_.force;
   if (stage_.b.rows() == 0) return;
-  product_.noalias() = stage_.b.transpose() * state.force;
-  result -= product_;
+  work_.noalias() = stage_.b.transpose() * state.force;
+  result -= work_;
 }
 
 void Stepper::acceleration(Vector& result) const {
@@ -129,9 +128,8 @@ void Stepper::acceleration(Vector& result) const {
     result = (now_.velocity - (divided ? velocity_before_ : next_.velocity)) / options_.step;
     return;
   }
-  balance_.resize(stage_.bulk.unknowns);
-  forces_at(now_, balance_);
-  accelerator().solve(balance_, result);
+  forces_at(now_, right_);
+  accelerator().solve(right_, result);
 }
 
 StepBalance Stepper::balance(const Vector& start) const {
@@ -179,24 +177,24 @@ inline void Stepper::right_hand_side(const StepSize& size) {
   const double w = 1 - options_.scheme.alpha_f, ratio = options_.scheme.alpha_f / w;
   const double of_velocity = size.weights.mass_velocity, of_acceleration = size.weights.mass_acceleration;
   const double *v0 = now_.velocity.data(), *a0 = now_.acceleration.data();
-  double* work = work_.data();
+  double* weighted = increment_.data();  // not solved for yet
   small::with_size(n, [=](auto count) {
 #pragma omp simd
     for (Eigen::Index i = 0; i < count; ++i) {
       right[i] = f1[i] + ratio * f0[i] - ku[i] / w;
-      work[i] = of_velocity * v0[i] + of_acceleration * a0[i];
+      weighted[i] = of_velocity * v0[i] + of_acceleration * a0[i];
     }
   });
-  stage_.bulk.mass.multiply(work_, work2_);
-  small::with_size(n, [=, inertia = work2_.data()](auto count) {
+  stage_.bulk.mass.multiply(increment_, work_);
+  small::with_size(n, [=, inertia = work_.data()](auto count) {
 #pragma omp simd
     for (Eigen::Index i = 0; i < count; ++i) right[i] += inertia[i];
   });
   if (!stage_.bulk.damping.zero()) {
     for (Eigen::Index i = 0; i < n; ++i)
-      work_[i] = size.weights.damping_velocity * now_.velocity[i] + size.weights.damping_acceleration * now_.acceleration[i];
-    stage_.bulk.damping.multiply(work_, work2_);
-    right_ -= work2_;
+      increment_[i] = size.weights.damping_velocity * now_.velocity[i] + size.weights.damping_acceleration * now_.acceleration[i];
+    stage_.bulk.damping.multiply(increment_, work_);
+    right_ -= work_;
   }
   if (newton_ != nullptr && ratio != 0) right_ -= ratio * plastic_now_.force;
   if (ratio == 0 || stage_.b.rows() == 0) return;

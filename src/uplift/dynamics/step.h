@@ -129,8 +129,8 @@ class Stepper {
   State now_, next_;
   Vector force_now_, force_next_, stiff_now_, momentum_now_;  // f, K u, M v
   Vector stiff_next_, momentum_next_;                         // only filters ask for both ends: empty without them
-  mutable Vector product_, balance_;                          // work space of forces_at and acceleration
-  Vector right_, increment_, work_, work2_;
+  Vector increment_;
+  mutable Vector right_, work_;  // right-hand side, and work space once a step is solved; of products
   Energies energies_;
   InterfaceEnergy interface_energy_;
   double initial_energy_ = 0, largest_external_ = 0;

@@ -11,7 +11,7 @@ namespace uplift {
 /// Work space of the size of the bulk.
 void Stepper::make_room() {
   const Eigen::Index n = stage_.bulk.unknowns;
-  for (Vector* v : {&force_now_, &force_next_, &stiff_now_, &momentum_now_, &right_, &increment_, &work_, &work2_}) v->setZero(n);
+  for (Vector* v : {&force_now_, &force_next_, &stiff_now_, &momentum_now_, &right_, &increment_, &work_}) v->setZero(n);
   if (filtered_) stiff_next_.setZero(n), momentum_next_.setZero(n);
 }
 
@@ -20,9 +20,9 @@ void Stepper::begin_acceleration() {
   const std::vector<Block> blocks = blocks_of(stage_.model, contact_.laws).blocks;
   if (motion_.acts()) motion_.set_rates(now_.time);
   release_parting(blocks, stage_.b, motion_, now_);
-  forces_at(now_, work_);
+  forces_at(now_, right_);
   now_.acceleration.setZero(stage_.bulk.unknowns);
-  accelerator().solve(work_, now_.acceleration);
+  accelerator().solve(right_, now_.acceleration);
   const bool constrained = std::ranges::any_of(blocks, [](const Block& block) { return block.cone != nullptr; });
   if (impacts_ != nullptr && constrained) {
     hold_initial_acceleration(blocks, impacts_->rows(), now_);

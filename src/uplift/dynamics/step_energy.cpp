@@ -28,11 +28,11 @@ void Stepper::book_energies(const StepSize& size) {
   if (!stage_.bulk.damping.zero()) {
     // work of the damping force, mean of both ends; average acceleration: C du/dt . du, with the velocity before an impact at the end
     if (path_ || (impacts_ != nullptr && options_.scheme.average_acceleration()))
-      for (Eigen::Index i = 0; i < n; ++i) work_[i] = du[i] / size.step;
+      for (Eigen::Index i = 0; i < n; ++i) right_[i] = du[i] / size.step;
     else
-      for (Eigen::Index i = 0; i < n; ++i) work_[i] = 0.5 * (now_.velocity[i] + next_.velocity[i]);
-    stage_.bulk.damping.multiply(work_, work2_);
-    energies_.damping += small::dot(n, work2_.data(), du);
+      for (Eigen::Index i = 0; i < n; ++i) right_[i] = 0.5 * (now_.velocity[i] + next_.velocity[i]);
+    stage_.bulk.damping.multiply(right_, work_);
+    energies_.damping += small::dot(n, work_.data(), du);
   }
   if (impacts_ != nullptr) energies_.impact -= impacts_->lag_work(increment_);
   energies_.kinetic = 0.5 * kinetic;

@@ -48,6 +48,14 @@ void add(double value, Space space, const Vec3& arm, Index unknown, Equilibrium:
   }
 }
 
+/// A^T x, of which many full unknowns at a time are handed out: all of them are a large vector.
+template <class Take>
+void each_part(const Sparse& a, const Vector& x, const Take& take) {
+  constexpr Index many = 4096;
+  for (Index first = 0; first < a.cols(); first += many)
+    take(first, Vector(a.middleCols(first, std::min(many, a.cols() - first)).transpose() * x));
+}
+
 double largest(const Vec3& v) {
   return v.cwiseAbs().maxCoeff();
 }
@@ -124,11 +132,13 @@ void EquilibriumCheck::note(const StepBalance& balance) {
   if (at_once_) balance_snapshots();
 }
 
-void EquilibriumCheck::sum_up(const Vector& forces, double sign, Equilibrium::Sum& sum) const {
+void EquilibriumCheck::sum_up(const Vector& forces, double sign, Equilibrium::Sum& sum, Index first) const {
   const Model& model = stage_->model;
   for (Index i = 0; i < forces.size(); ++i)
-    if (forces[i] != 0)
-      add(sign * forces[i], model.space, model.nodes[static_cast<std::size_t>(model.space.node_of(i))].position - centre_, i, sum);
+    if (forces[i] != 0) {
+      const Index at = first + i;
+      add(sign * forces[i], model.space, model.nodes[static_cast<std::size_t>(model.space.node_of(at))].position - centre_, at, sum);
+    }
 }
 
 /// Every element is formed once and answers all instants.
@@ -166,11 +176,12 @@ void EquilibriumCheck::add_elements() {
 
 void EquilibriumCheck::add_forces(const ForceModel& forces, Snapshot& at) const {
   const Model& model = stage_->model;
-  const auto put = [&](const Vector& internal, Equilibrium::Sum& sum) {
-    at.unbalanced += internal;
-    sum_up(internal, -1, sum);
+  const auto put = [&](const Vector& internal, Equilibrium::Sum& sum, Index first = 0) {
+    at.unbalanced.segment(first, internal.size()) += internal;
+    sum_up(internal, -1, sum, first);
   };
-  if (model.assembly.b.rows() > 0) put(model.assembly.b.transpose() * at.joint, at.sums.joint);
+  if (model.assembly.b.rows() > 0)
+    each_part(model.assembly.b, at.joint, [&](Index first, const Vector& internal) { put(internal, at.sums.joint, first); });
   if (stage_->second_order != nullptr) {
     Vector displacement(model.full_unknowns());
     for (Index i = 0; i < displacement.size(); ++i) displacement[i] = at.displacement.at(model, i);
@@ -185,13 +196,13 @@ void EquilibriumCheck::add_forces(const ForceModel& forces, Snapshot& at) const 
     for (Index i = 0; i < damped.size(); ++i) full[model.kept[static_cast<std::size_t>(i)]] = damped[i];
     put(full, at.sums.damping);
   }
-  Vector reactions = forces.constraint_forces(at.unbalanced);
-  for (Index i = 0; i < reactions.size(); ++i)
-    if (!model.space.is_rotation(model.space.index_of(i)))
-      at.sums.largest_reaction = std::max(at.sums.largest_reaction, std::abs(reactions[i]));
-  sum_up(reactions, 1, at.sums.reactions);
-  reactions -= at.unbalanced;
-  sum_up(reactions, 1, at.sums.residual);
+  each_part(model.assembly.constraints, forces.constraint_factors(at.unbalanced), [&](Index first, const Vector& reactions) {
+    for (Index i = 0; i < reactions.size(); ++i)
+      if (!model.space.is_rotation(model.space.index_of(static_cast<int>(first + i))))
+        at.sums.largest_reaction = std::max(at.sums.largest_reaction, std::abs(reactions[i]));
+    sum_up(reactions, 1, at.sums.reactions, first);
+    sum_up(reactions - at.unbalanced.segment(first, reactions.size()), 1, at.sums.residual, first);
+  });
 }
 
 /// Turns the snapshots into their sums.

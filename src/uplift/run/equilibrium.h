@@ -49,7 +49,7 @@ class EquilibriumCheck {
   void add_elements();
   void add_forces(const ForceModel& forces, Snapshot& at) const;
   void balance_snapshots();
-  void sum_up(const Vector& forces, double sign, Equilibrium::Sum& sum) const;
+  void sum_up(const Vector& forces, double sign, Equilibrium::Sum& sum, Index first = 0) const;
 
   std::unique_ptr<const ForceStage> stage_;
   const bool at_once_;

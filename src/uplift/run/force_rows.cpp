@@ -131,14 +131,13 @@ void ForceModel::add_work(const Weights& motion, ForceRow& row) const {
   }
 }
 
-Vector ForceModel::motion_of(const Vector& of_row) const {
-  const Sparse& g = stage_.model.assembly.constraints;
-  if (!normal_) normal_ = std::make_unique<Normal>(g);
-  return g.transpose() * normal_->factor.solve(of_row);
+Vector ForceModel::solve_normal(const Vector& of_row) const {
+  if (!normal_) normal_ = std::make_unique<Normal>(stage_.model.assembly.constraints);
+  return normal_->factor.solve(of_row);
 }
 
 void ForceModel::add_constraint_rows(const Vector& of_row, ForceRow& row) const {
-  const Vector motion = motion_of(of_row);
+  const Vector motion = stage_.model.assembly.constraints.transpose() * solve_normal(of_row);
   const double size = motion.size() > 0 ? motion.cwiseAbs().maxCoeff() : 0;
   Weights moved;
   for (Index i = 0; i < motion.size(); ++i)
@@ -155,10 +154,9 @@ void ForceModel::add_constraints(int first, int last, const Weights& of_unknown,
   if (!of_row.isZero(0)) add_constraint_rows(of_row, row);
 }
 
-Vector ForceModel::constraint_forces(const Vector& unbalanced) const {
+Vector ForceModel::constraint_factors(const Vector& unbalanced) const {
   const Sparse& g = stage_.model.assembly.constraints;
-  if (g.rows() == 0) return Vector::Zero(unbalanced.size());
-  return motion_of(g * unbalanced);
+  return g.rows() == 0 ? Vector() : solve_normal(g * unbalanced);
 }
 
 std::vector<ForceRow> SectionForces::rows(const ForceModel& model) const {

@@ -51,12 +51,12 @@ class ForceModel {
   void add_work(const Weights& motion, ForceRow& row) const;
   /// Forces of the constraint rows [first, last) on the unknowns, times a weight each.
   void add_constraints(int first, int last, const Weights& of_unknown, ForceRow& row) const;
-  /// The constraint forces for what add_work sums up on every unknown.
-  Vector constraint_forces(const Vector& unbalanced) const;
+  /// The constraint forces for what add_work sums up on every unknown: the factors of the constraint rows G that give them, G^T factors.
+  Vector constraint_factors(const Vector& unbalanced) const;
 
  private:
-  /// G^T (G G^T)^-1 x for x on the constraint rows G: how much each unknown moves for these rows alone.
-  Vector motion_of(const Vector& of_row) const;
+  /// (G G^T)^-1 x for x on the constraint rows G; G^T times it is how much each unknown moves for these rows alone.
+  Vector solve_normal(const Vector& of_row) const;
   void add_constraint_rows(const Vector& of_row, ForceRow& row) const;
 
   const std::vector<int>& elements_of(int node) const;
