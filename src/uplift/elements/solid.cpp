@@ -33,7 +33,7 @@ Solid::Solid(Cell cell, std::span<const int> nodes, Coordinates coordinates, std
       nodes_(copy_of(nodes)),
       coordinates_(std::move(coordinates)),
       section_(std::move(section)),
-      part_(part ? std::make_shared<const CellRule>(*part) : nullptr) {
+      part_(part ? std::make_unique<const CellRule>(*part) : nullptr) {
   if (part_ && section_->incompatible_modes) section_ = compatible(*section_);  // their patch test is that of whole cells
   assert(dimension_ >= 2 && static_cast<int>(nodes.size()) == info(cell).nodes);
   assert(section_->thickness > 0);

@@ -96,7 +96,7 @@ class Solid : public Element {
   std::unique_ptr<const int[]> nodes_;
   Coordinates coordinates_;
   std::shared_ptr<const SolidSection> section_;  // of all cells of one filling
-  std::shared_ptr<const CellRule> part_;         // null: the cell is whole
+  std::unique_ptr<const CellRule> part_;         // null: the cell is whole
 };
 
 }  // namespace uplift

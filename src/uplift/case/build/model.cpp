@@ -171,15 +171,18 @@ void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
   names.nodes.add_numbered(
       "mesh.", static_cast<int>(mesh.nodes.size()), [from = read.mesh](int node) { return from->mesh.number(node); }, table.where(),
       table.path());
-  auto coordinates = std::make_shared<std::vector<Vec3>>();
-  coordinates->reserve(names.positions.size() + mesh.nodes.size());
-  coordinates->assign(names.positions.size(), Vec3::Zero());
+  if (names.first_of_mesh == 0) {  // the nodes of the mesh itself
+    names.coordinates = Coordinates(read.mesh, &mesh.nodes);
+  } else {
+    std::vector<Vec3> all(names.positions.size(), Vec3::Zero());
+    all.insert(all.end(), mesh.nodes.begin(), mesh.nodes.end());
+    names.coordinates = std::make_shared<const std::vector<Vec3>>(std::move(all));
+  }
   for (int i = 0; i < static_cast<int>(mesh.nodes.size()); ++i) {
     const int node = names.first_of_mesh + i;
     const std::string number = names.nodes[node];
     const auto name = named.find(i);
-    coordinates->push_back(mesh.nodes[static_cast<std::size_t>(i)]);
-    names.positions.emplace_back(coordinates->back());
+    names.positions.emplace_back(mesh.nodes[static_cast<std::size_t>(i)]);
     if (name == named.end()) {
       builder.add_node(number, names.positions.back(), table.where());
     } else {
@@ -187,7 +190,6 @@ void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
       builder.add_node(name->second, names.positions.back(), table.where(), number);
     }
   }
-  names.coordinates = coordinates;
   const std::vector<bool> bare = bare_nodes(mesh);
   for (std::size_t i = 0; i < bare.size(); ++i)
     if (bare[i]) names.bare.insert(names.first_of_mesh + static_cast<int>(i));
@@ -203,7 +205,7 @@ void add_mesh(const Case& read, ModelBuilder& builder, CaseNames& names) {
       for (const int node : mesh.cell(cell)) nodes.push_back(names.first_of_mesh + node);
       const bool part = mesh.part(cell) != nullptr;
       const CellRule rule = part ? rule_of_part(mesh, cell) : CellRule{};
-      builder.add_element(solid.filling->make({mesh.type(cell), nodes, coordinates, part ? &rule : nullptr}), solid.table->where());
+      builder.add_element(solid.filling->make({mesh.type(cell), nodes, names.coordinates, part ? &rule : nullptr}), solid.table->where());
     }
 }
 
