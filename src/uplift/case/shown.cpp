@@ -92,7 +92,8 @@ double weight_of(const BuiltCase& built) {
     if (!model.time_loads[i].dead) continue;
     for (int node = 0; node < static_cast<int>(carried.size()); ++node)
       if (carried[static_cast<std::size_t>(node)])
-        for (int k = 0; k < model.space.dimension; ++k) weight -= model.assembly.loads[i][model.space.unknowns() * node + k] * normal[k];
+        for (int k = 0; k < model.space.dimension; ++k)
+          weight -= model.assembly.loads[i].coeff(model.space.unknowns() * node + k) * normal[k];
   }
   return weight;
 }

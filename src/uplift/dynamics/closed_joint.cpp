@@ -32,10 +32,9 @@ double stiffness_under_rigid_bodies(const Model& model) {
   double largest = 0;
   for (std::size_t k = 0; k < model.time_loads.size(); ++k) {
     if (!model.time_loads[k].dead) continue;
-    const Vector& pattern = model.assembly.loads[k];
     double sum = 0;
-    for (Index i = 0; i < pattern.size(); ++i)
-      if (!model.space.is_rotation(model.space.index_of(static_cast<int>(i)))) sum += std::abs(pattern[i]);
+    for (SparseVector::InnerIterator entry(model.assembly.loads[k]); entry; ++entry)
+      if (!model.space.is_rotation(model.space.index_of(static_cast<int>(entry.index())))) sum += std::abs(entry.value());
     largest = std::max(largest, sum);
   }
   const double stiffness = 1e4 * largest / base_size(model);

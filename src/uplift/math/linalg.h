@@ -11,6 +11,7 @@ using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;  // column-major
 using Sparse = Eigen::SparseMatrix<double>;
 using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+using SparseVector = Eigen::SparseVector<double>;
 using Triplet = Eigen::Triplet<double>;
 using Vec2 = Eigen::Vector2d;
 using Vec3 = Eigen::Vector3d;

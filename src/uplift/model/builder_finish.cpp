@@ -97,11 +97,13 @@ void ModelBuilder::make_drives(Model& model, const Matrix& motion_shapes) const 
   const Index unknowns = model.full_unknowns();
   const ElementSum mass = sum(&Local::mass);
   const auto one = std::make_shared<const One>();
-  const auto add = [&](std::string name, Vector pattern, std::shared_ptr<const TimeFunction> function, bool dead) {
+  const auto add = [&](std::string name, const Vector& pattern, std::shared_ptr<const TimeFunction> function, bool dead) {
     const bool constant = function->is_one();
-    model.time_loads.push_back(
-        {std::move(name), model.expansion * pattern, std::move(function), TimeLoad::Order::value, dead, constant});
-    model.assembly.loads.push_back(std::move(pattern));
+    model.time_loads.push_back({std::move(name), model.expansion * pattern, std::move(function), TimeLoad::Order::value, dead, constant});
+    SparseVector& kept = model.assembly.loads.emplace_back(unknowns);  // gravity acts on one of six unknowns of a node of solids
+    kept.reserve((pattern.array() != 0).count());
+    for (Index i = 0; i < unknowns; ++i)
+      if (pattern[i] != 0) kept.insertBack(i) = pattern[i];
   };
   if (!gravity_.isZero()) add("gravity", times_translation(mass, space_, gravity_, unknowns), one, true);
   for (std::size_t k = 0; k < interfaces_.size(); ++k)
@@ -110,7 +112,7 @@ void ModelBuilder::make_drives(Model& model, const Matrix& motion_shapes) const 
   for (const Load& load : loads_) {
     Vector pattern = Vector::Zero(unknowns);
     for (const auto& [unknown, value] : load.pattern) pattern[unknown] += value;
-    add(load.name, std::move(pattern), load.function ? load.function : one, load.dead);
+    add(load.name, pattern, load.function ? load.function : one, load.dead);
   }
   for (const GroundAcceleration& ground : grounds_)
     add(ground.name, times_translation(mass, space_, -ground.direction, unknowns), ground.function, false);

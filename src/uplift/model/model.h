@@ -73,10 +73,10 @@ struct GroundAcceleration {
 /// What the elimination hides but reactions and the P-Delta effect need: everything on the full unknowns, but for the matrices, which are
 /// large and soon made again (assembled).
 struct Assembly {
-  Sparse b;                     // interface rows x full unknowns
-  Sparse constraints;           // independent rows g with g . u = prescribed: supports, rigid ties, inextensible beams
-  std::vector<Vector> loads;    // full pattern of time load i; empty for those that prescribed motions make
-  Vec3 gravity = Vec3::Zero();  // m/s2
+  Sparse b;                         // interface rows x full unknowns
+  Sparse constraints;               // independent rows g with g . u = prescribed: supports, rigid ties, inextensible beams
+  std::vector<SparseVector> loads;  // full pattern of time load i; empty for those that prescribed motions make
+  Vec3 gravity = Vec3::Zero();      // m/s2
   /// slave's constraint rows start at `row`, one per unknown of a node; offset = slave - master [m]
   struct Tie {
     int slave = 0, row = 0;

@@ -116,7 +116,7 @@ void ForceModel::add_work(const Weights& motion, ForceRow& row) const {
   for (std::size_t i = 0; i < assembly.loads.size(); ++i) {
     double work = 0;
     if (assembly.loads[i].size() > 0)
-      for (const auto& [unknown, weight] : motion) work += weight * assembly.loads[i][unknown];
+      for (const auto& [unknown, weight] : motion) work += weight * assembly.loads[i].coeff(unknown);
     if (work == 0) continue;
     if (model.time_loads[i].constant)
       row.constant -= work;

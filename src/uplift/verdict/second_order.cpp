@@ -42,7 +42,7 @@ double swaying_weight(const BuiltCase& built) {
     if (!model.time_loads[i].dead) continue;
     for (int node = 0; node < static_cast<int>(carried.size()); ++node)
       if (const double above = height_of(model, node) - foot; carried[static_cast<std::size_t>(node)] && above > 0)
-        sum -= model.assembly.loads[i][model.space.unknowns() * node + model.space.up()] * above / height;
+        sum -= model.assembly.loads[i].coeff(model.space.unknowns() * node + model.space.up()) * above / height;
   }
   return sum;
 }

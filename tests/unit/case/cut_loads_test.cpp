@@ -66,7 +66,7 @@ std::pair<Vec3, Vec3> sums_of_load(const BuiltCase& built) {
   for (std::size_t node = 0; node < built.model.nodes.size(); ++node) {
     Vec3 at_node = Vec3::Zero();
     for (int k = 0; k < built.model.space.dimension; ++k)
-      at_node[k] = built.model.assembly.loads.front()[built.model.space.unknowns() * static_cast<int>(node) + k];
+      at_node[k] = built.model.assembly.loads.front().coeff(built.model.space.unknowns() * static_cast<int>(node) + k);
     force += at_node, moment += cross(built.model.nodes[node].position, at_node);
   }
   return {force, moment};

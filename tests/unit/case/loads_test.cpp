@@ -37,7 +37,7 @@ Sums sums_of_load(const BuiltCase& built) {
   Sums sums;
   for (int node = 0; node < static_cast<int>(model.nodes.size()); ++node) {
     Vec3 force = Vec3::Zero();
-    for (int k = 0; k < model.space.dimension; ++k) force[k] = model.assembly.loads.front()[model.space.unknowns() * node + k];
+    for (int k = 0; k < model.space.dimension; ++k) force[k] = model.assembly.loads.front().coeff(model.space.unknowns() * node + k);
     sums.force += force;
     sums.moment += cross(model.nodes[static_cast<std::size_t>(node)].position, force);
   }

@@ -128,7 +128,7 @@ TEST(WaterUnderABase, ByALevelThatTheBaseCrosses) {
   const auto time_load = std::ranges::find(built.model.time_loads, "water pressure in base", &TimeLoad::name);
   ASSERT_NE(time_load, built.model.time_loads.end());
   EXPECT_TRUE(time_load->dead);
-  const Vector& load = built.model.assembly.loads[static_cast<std::size_t>(time_load - built.model.time_loads.begin())];
+  const Vector load = built.model.assembly.loads[static_cast<std::size_t>(time_load - built.model.time_loads.begin())];
   Vec3 block_side = Vec3::Zero(), both = Vec3::Zero();
   for (int node = 0; node < static_cast<int>(built.model.nodes.size()); ++node) {
     const Vec3 here(load[3 * node], load[3 * node + 1], 0);

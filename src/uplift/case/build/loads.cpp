@@ -87,9 +87,9 @@ Vec3 resultant_of_load(const CaseLoad& load, const Model& model) {
   Vec3 sum = Vec3::Zero();
   const auto time_load = std::ranges::find(model.time_loads, load.name, &TimeLoad::name);
   if (time_load == model.time_loads.end()) return sum;
-  const Vector& pattern = model.assembly.loads[static_cast<std::size_t>(time_load - model.time_loads.begin())];
-  for (Index i = 0; i < pattern.size(); ++i)
-    if (const int k = model.space.index_of(static_cast<int>(i)); !model.space.is_rotation(k)) sum[k] += pattern[i];
+  const SparseVector& pattern = model.assembly.loads[static_cast<std::size_t>(time_load - model.time_loads.begin())];
+  for (SparseVector::InnerIterator entry(pattern); entry; ++entry)
+    if (const int k = model.space.index_of(static_cast<int>(entry.index())); !model.space.is_rotation(k)) sum[k] += entry.value();
   return sum;
 }
 

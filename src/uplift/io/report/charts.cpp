@@ -145,7 +145,7 @@ Chart load_chart(const Case& read, const ReportRun& run) {
     while (at < model.time_loads.size() && model.time_loads[at].name != load.name) ++at;
     if (at == model.time_loads.size()) continue;
     next = at + 1;
-    const Vector& pattern = model.assembly.loads[at];
+    const Vector pattern(model.assembly.loads[at]);
     for (int axis = 0; axis < model.space.dimension; ++axis) {
       double sum = 0;
       for (Index i = axis; i < pattern.size(); i += model.space.unknowns()) sum += pattern[i];
