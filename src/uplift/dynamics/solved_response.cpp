@@ -221,7 +221,10 @@ Outcome SolvedResponse::solve(const Vector& right, const Vector& opening, const 
     const double moved = std::min(pressed, largest(solution.opening - opening));  // in this step; small in a light motion
     const double lost = round_off * largest(solution.opening) + of_motion * largest(b_.cwiseAbs() * increment.cwiseAbs());
     const double allowed = std::max(tolerance * moved, least * pressed) + lost;
-    if (largest(rest) <= allowed) return all;
+    if (largest(rest) <= allowed) {
+      work_.given.resize(0, 0);  // as large as the model; beside a solve allocating it costs nothing
+      return all;
+    }
     share = allowed / largest(rest);
     improve(problem.free_opening, rest);
   }
