@@ -21,6 +21,7 @@
 #include "uplift/model/base_size.h"
 #include "uplift/model/check.h"
 #include "uplift/model/function_jumps.h"
+#include "uplift/model/matrix_sum.h"
 #include "uplift/model/model_matrices.h"
 #include "uplift/model/tuned_mass.h"
 
@@ -237,7 +238,7 @@ void leave_out_opening_displacement(BuiltCase& built) {
 
 /// N/m; of rigid bodies alone any number does.
 double largest_stiffness(const Model& model) {
-  const double largest = model.free() > 0 ? Vector(model.stiffness.diagonal()).maxCoeff() : 0;
+  const double largest = model.free() > 0 ? diagonal_of(model, &Model::stiffness).maxCoeff() : 0;
   return largest > 0 ? largest : 1e9;
 }
 

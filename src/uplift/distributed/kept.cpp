@@ -48,14 +48,18 @@ void KeptMatrix::multiply(std::span<const DistributedTerm> sum, const Vector& x,
   Ranks::all().multiply(sum, x, y);
 }
 
+Vector KeptMatrix::diagonal() const {
+  return Ranks::all().diagonal(number_, rows_);
+}
+
 KeptCells::~KeptCells() {
   Ranks::all().drop(number_);
 }
 
-std::shared_ptr<const DistributedMatrix> HomeOnRanks::keep(Vector diagonal, const MakeColumns& make, const EqualCellPart& part) const {
+std::shared_ptr<const DistributedMatrix> HomeOnRanks::keep(Index rows, const MakeColumns& make, const EqualCellPart& part) const {
   const auto* cells = dynamic_cast<const KeptCells*>(part.cells.get());
-  Ranks::Kept kept = Ranks::all().keep(diagonal.size(), make, {cells != nullptr ? cells->number() : 0, &part.local});
-  return std::make_shared<const KeptMatrix>(kept.matrix, std::move(diagonal), std::move(kept.entries));
+  Ranks::Kept kept = Ranks::all().keep(rows, make, {cells != nullptr ? cells->number() : 0, &part.local});
+  return std::make_shared<const KeptMatrix>(kept.matrix, rows, std::move(kept.entries));
 }
 
 std::shared_ptr<const DistributedCells> HomeOnRanks::keep_cells(Index rows, const std::vector<EqualCells>& classes) const {
@@ -191,6 +195,27 @@ void Ranks::drop(std::int64_t kept) {
   cells_.erase(kept);
 }
 
+Vector Ranks::diagonal(std::int64_t matrix, std::int64_t rows) {
+  const std::lock_guard lock(one_at_a_time_);
+  HalfWay half_way(half_way_);
+  const Order order{What::diagonal, matrix, rows};
+  tell(order);
+  Vector diagonal(rows);
+  diagonal_together(order, &diagonal);
+  half_way.done();
+  return diagonal;
+}
+
+/// `diagonal`: on rank 0.
+void Ranks::diagonal_together(const Order& order, Vector* diagonal) const {
+  const Shares shares(static_cast<PetscInt>(order.rows), count_);
+  const KeptRows& kept = kept_.at(order.system);
+  Vector own(shares.count(rank_));
+  for (Index i = 0; i < own.size(); ++i) own[i] = kept.columns.coeff(shares.first(rank_) + i, i);
+  if (kept.cells != nullptr) own += kept.cells->diagonal(kept.local);
+  gather(own, order.rows, diagonal);
+}
+
 void Ranks::multiply(std::span<const DistributedTerm> sum, const Vector& x, Vector& y) {
   const std::lock_guard lock(one_at_a_time_);
   HalfWay half_way(half_way_);
@@ -214,10 +239,7 @@ void Ranks::multiply_together(const Order& order, std::span<const DistributedTer
     cells.add_product(sum_of_cells.local, from.data(), to.data());
     product += to.head(cells.own());
   }
-  std::vector<int> counts, firsts;
-  for (int rank = 0; rank < count_; ++rank) counts.push_back(shares.count(rank)), firsts.push_back(shares.first(rank));
-  MPI_Gatherv(product.data(), shares.count(rank_), MPI_DOUBLE, y == nullptr ? nullptr : y->data(), counts.data(), firsts.data(), MPI_DOUBLE,
-              0, ranks_);
+  gather(product, order.rows, y);
 }
 
 /// `sum`: on rank 0.

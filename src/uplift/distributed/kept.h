@@ -11,19 +11,18 @@ namespace uplift {
 /// A matrix whose rows the ranks of the job keep (Ranks).
 class KeptMatrix final : public DistributedMatrix {
  public:
-  KeptMatrix(std::int64_t number, Vector diagonal, std::vector<double> entries)
-      : number_(number), diagonal_(std::move(diagonal)), entries_(std::move(entries)) {}
+  KeptMatrix(std::int64_t number, Index rows, std::vector<double> entries) : number_(number), rows_(rows), entries_(std::move(entries)) {}
   ~KeptMatrix() override;
   KeptMatrix(const KeptMatrix&) = delete;
   KeptMatrix& operator=(const KeptMatrix&) = delete;
   void multiply(std::span<const DistributedTerm> sum, const Vector& x, Vector& y) const override;
-  const Vector& diagonal() const override { return diagonal_; }
+  Vector diagonal() const override;
   const std::vector<double>& entries() const override { return entries_; }
   std::int64_t number() const { return number_; }
 
  private:
   std::int64_t number_;
-  Vector diagonal_;
+  Index rows_;
   std::vector<double> entries_;
 };
 
@@ -48,7 +47,7 @@ class HomeOnRanks final : public MatrixHome {
   explicit HomeOnRanks(bool takes_cells) : takes_cells_(takes_cells) {}
   bool takes_cells() const override { return takes_cells_; }
   std::shared_ptr<const DistributedCells> keep_cells(Index rows, const std::vector<EqualCells>& classes) const override;
-  std::shared_ptr<const DistributedMatrix> keep(Vector diagonal, const MakeColumns& make, const EqualCellPart& part) const override;
+  std::shared_ptr<const DistributedMatrix> keep(Index rows, const MakeColumns& make, const EqualCellPart& part) const override;
 
  private:
   bool takes_cells_;

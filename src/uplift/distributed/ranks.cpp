@@ -98,6 +98,9 @@ void Ranks::serve() {
         kept_.erase(order.system);
         cells_.erase(order.system);
         break;
+      case What::diagonal:
+        diagonal_together(order, nullptr);
+        break;
       case What::multiply:
         multiply_together(order, {}, nullptr, nullptr);
         break;
@@ -134,7 +137,8 @@ Ranks::Made Ranks::make_together(const Order& order, const Scaled* matrix, std::
     made.outcome = system->set_motions(spread_motions(order, matrix), static_cast<PetscInt>(order.columns));
   if (made.outcome.ok()) made.outcome = system->prepare(given);
   made.nonzeros = system->nonzeros();
-  if (made.outcome.ok()) systems_[order.system] = std::move(system);
+  std::vector<double> scale = own_rows(order.rows, matrix != nullptr ? matrix->scale.data() : nullptr);
+  if (made.outcome.ok()) systems_[order.system] = {std::move(system), std::move(scale)};
   return made;
 }
 
@@ -185,21 +189,28 @@ SystemOutcome Ranks::solve(std::int64_t system, const Matrix& b, Matrix& x, doub
 }
 
 SystemOutcome Ranks::solve_together(const Order& order, const double* b, double* x) {
-  const auto rows = static_cast<PetscInt>(order.rows), columns = static_cast<PetscInt>(order.columns);
-  const Shares shares(rows, count_);
-  const PetscInt local = shares.count(rank_);
-  std::vector<int> counts, firsts;
-  for (int rank = 0; rank < count_; ++rank) counts.push_back(shares.count(rank)), firsts.push_back(shares.first(rank));
+  const auto columns = static_cast<PetscInt>(order.columns);
+  const Parts of = parts(order.rows);
+  const int local = of.counts[static_cast<std::size_t>(rank_)];
+  const auto& [asked, scale] = systems_.at(order.system);
   std::vector<double> given(static_cast<std::size_t>(local) * static_cast<std::size_t>(columns)), solved(given.size());
-  for (PetscInt c = 0; c < columns; ++c)
-    MPI_Scatterv(b == nullptr ? nullptr : b + order.rows * c, counts.data(), firsts.data(), MPI_DOUBLE,
-                 given.data() + static_cast<std::ptrdiff_t>(local) * c, local, MPI_DOUBLE, 0, ranks_);
-  System& asked = *systems_.at(order.system);
-  SystemOutcome outcome = asked.solve(given.data(), solved.data(), columns, order.residual);
-  iterations_ += asked.iterations();
-  for (PetscInt c = 0; c < columns; ++c)
-    MPI_Gatherv(solved.data() + static_cast<std::ptrdiff_t>(local) * c, local, MPI_DOUBLE, x == nullptr ? nullptr : x + order.rows * c,
-                counts.data(), firsts.data(), MPI_DOUBLE, 0, ranks_);
+  const auto scale_column = [&, factors = scale.data()](double* column) {
+    for (int i = 0; i < local; ++i) column[i] *= factors[i];
+  };
+  for (PetscInt c = 0; c < columns; ++c) {
+    double* column = given.data() + static_cast<std::ptrdiff_t>(local) * c;
+    MPI_Scatterv(b == nullptr ? nullptr : b + order.rows * c, of.counts.data(), of.firsts.data(), MPI_DOUBLE, column, local, MPI_DOUBLE, 0,
+                 ranks_);
+    scale_column(column);
+  }
+  SystemOutcome outcome = asked->solve(given.data(), solved.data(), columns, order.residual);
+  iterations_ += asked->iterations();
+  for (PetscInt c = 0; c < columns; ++c) {
+    double* column = solved.data() + static_cast<std::ptrdiff_t>(local) * c;
+    scale_column(column);
+    MPI_Gatherv(column, local, MPI_DOUBLE, x == nullptr ? nullptr : x + order.rows * c, of.counts.data(), of.firsts.data(), MPI_DOUBLE, 0,
+                ranks_);
+  }
   return outcome;
 }
 
@@ -227,18 +238,20 @@ SystemOutcome Ranks::flexibility_together(const Order& order, std::vector<int> c
       if (const std::int64_t row = chosen[static_cast<std::size_t>(k)] - first_row; row >= 0 && row < local) take(k, row);
   };
   const std::int64_t block = std::clamp<std::int64_t>(most_numbers / (shares.count(0) + 1), 1, most_columns);
-  System& asked = *systems_.at(order.system);
+  const auto& [asked, scale] = systems_.at(order.system);
   for (std::int64_t first = 0; first < count; first += block) {
     const std::int64_t columns = std::min(block, count - first);
     std::vector<double> given(static_cast<std::size_t>(local * columns)), solved(given.size());
-    each_of_mine(first, first + columns,
-                 [&](std::int64_t k, std::int64_t row) { given[static_cast<std::size_t>(row + local * (k - first))] = 1; });
-    SystemOutcome outcome = asked.solve(given.data(), solved.data(), static_cast<PetscInt>(columns));
-    iterations_ += asked.iterations();
+    each_of_mine(first, first + columns, [&](std::int64_t k, std::int64_t row) {
+      given[static_cast<std::size_t>(row + local * (k - first))] = scale[static_cast<std::size_t>(row)];
+    });
+    SystemOutcome outcome = asked->solve(given.data(), solved.data(), static_cast<PetscInt>(columns));
+    iterations_ += asked->iterations();
     if (!outcome.ok()) return outcome;
     Matrix answer = Matrix::Zero(count, columns);
     each_of_mine(0, count, [&](std::int64_t k, std::int64_t row) {
-      for (std::int64_t c = 0; c < columns; ++c) answer(k, c) = solved[static_cast<std::size_t>(row + local * c)];
+      for (std::int64_t c = 0; c < columns; ++c)
+        answer(k, c) = scale[static_cast<std::size_t>(row)] * solved[static_cast<std::size_t>(row + local * c)];
     });
     MPI_Reduce(entries == nullptr ? answer.data() : MPI_IN_PLACE, answer.data(), static_cast<int>(answer.size()), MPI_DOUBLE, MPI_SUM, 0,
                ranks_);
@@ -247,28 +260,48 @@ SystemOutcome Ranks::flexibility_together(const Order& order, std::vector<int> c
   return {};
 }
 
+Ranks::Parts Ranks::parts(std::int64_t rows) const {
+  const Shares shares(static_cast<PetscInt>(rows), count_);
+  Parts made;
+  for (int rank = 0; rank < count_; ++rank) made.counts.push_back(shares.count(rank)), made.firsts.push_back(shares.first(rank));
+  return made;
+}
+
+/// The rank's rows of a vector on rank 0.
+std::vector<double> Ranks::own_rows(std::int64_t rows, const double* vector) const {
+  const Parts of = parts(rows);
+  const int count = of.counts[static_cast<std::size_t>(rank_)];
+  std::vector<double> own(static_cast<std::size_t>(count));
+  MPI_Scatterv(vector, of.counts.data(), of.firsts.data(), MPI_DOUBLE, own.data(), count, MPI_DOUBLE, 0, ranks_);
+  return own;
+}
+
+/// The whole vector; `all`: on rank 0.
+void Ranks::gather(const Vector& own, std::int64_t rows, Vector* all) const {
+  const Parts of = parts(rows);
+  MPI_Gatherv(own.data(), static_cast<int>(own.size()), MPI_DOUBLE, all == nullptr ? nullptr : all->data(), of.counts.data(),
+              of.firsts.data(), MPI_DOUBLE, 0, ranks_);
+}
+
 /// The node of each of the rank's rows; empty without motions.
 std::vector<int> Ranks::spread_nodes(const Order& order, const Scaled* matrix) const {
   if (order.columns == 0) return {};
-  const Shares shares(static_cast<PetscInt>(order.rows), count_);
-  std::vector<int> counts, firsts, node(static_cast<std::size_t>(shares.count(rank_)));
-  for (int rank = 0; rank < count_; ++rank) counts.push_back(shares.count(rank)), firsts.push_back(shares.first(rank));
-  MPI_Scatterv(matrix == nullptr ? nullptr : matrix->motions.node.data(), counts.data(), firsts.data(), MPI_INT, node.data(),
-               shares.count(rank_), MPI_INT, 0, ranks_);
+  const Parts of = parts(order.rows);
+  const int count = of.counts[static_cast<std::size_t>(rank_)];
+  std::vector<int> node(static_cast<std::size_t>(count));
+  MPI_Scatterv(matrix == nullptr ? nullptr : matrix->motions.node.data(), of.counts.data(), of.firsts.data(), MPI_INT, node.data(), count,
+               MPI_INT, 0, ranks_);
   return node;
 }
 
 /// The rank's rows of the motions of S A S, which are S^-1 times those of A, one column after another.
 std::vector<double> Ranks::spread_motions(const Order& order, const Scaled* matrix) const {
-  const Shares shares(static_cast<PetscInt>(order.rows), count_);
-  const PetscInt local = shares.count(rank_);
-  std::vector<int> counts, firsts;
-  for (int rank = 0; rank < count_; ++rank) counts.push_back(shares.count(rank)), firsts.push_back(shares.first(rank));
-  std::vector<double> rows(static_cast<std::size_t>(local) * static_cast<std::size_t>(order.columns));
+  std::vector<double> rows;
   Vector motion;
   for (std::int64_t c = 0; c < order.columns; ++c) {
     if (matrix != nullptr) motion = matrix->motions.motions.col(c).cwiseQuotient(matrix->scale);
-    MPI_Scatterv(motion.data(), counts.data(), firsts.data(), MPI_DOUBLE, rows.data() + local * c, local, MPI_DOUBLE, 0, ranks_);
+    const std::vector<double> own = own_rows(order.rows, motion.data());
+    rows.insert(rows.end(), own.begin(), own.end());
   }
   return rows;
 }

@@ -61,7 +61,9 @@ class Ranks {
   void drop(std::int64_t kept);
   /// y = sum of factor * A x of kept matrices.
   void multiply(std::span<const DistributedTerm> sum, const Vector& x, Vector& y);
-  /// x = A^-1 b; x has the shape of b. `residual`: see System::solve.
+  /// Of a kept matrix.
+  Vector diagonal(std::int64_t matrix, std::int64_t rows);
+  /// x = A^-1 b; x has the shape of b and may be b. `residual`: see System::solve.
   SystemOutcome solve(std::int64_t system, const Matrix& b, Matrix& x, double residual = 0);
   /// The entries of A^-1 between chosen unknowns. Every rank makes its rows of the loads and hands out those of the answers that are
   /// chosen: nothing as long as A is ever on rank 0.
@@ -83,7 +85,7 @@ class Ranks {
   void serve();
 
  private:
-  enum class What : std::int64_t { make, foretell, keep, keep_cells, drop, multiply, solve, flexibility, refuse, release, end };
+  enum class What : std::int64_t { make, foretell, keep, keep_cells, drop, multiply, diagonal, solve, flexibility, refuse, release, end };
   struct Order {
     What what = What::end;
     // system: or a kept matrix, or cells; columns: of the loads, the motions or the flexibility; letters: of the options; terms: kept
@@ -115,10 +117,18 @@ class Ranks {
   Sparse spread_columns(const Order& order, const MatrixHome::MakeColumns* make) const;
   KeptCells keep_cells_together(const Order& order, const std::vector<EqualCells>* classes);
   std::vector<Matrix> spread_local(std::size_t classes, const std::vector<Matrix>* local) const;
+  void diagonal_together(const Order& order, Vector* diagonal) const;
   void multiply_together(const Order& order, std::span<const DistributedTerm> sum, const Vector* x, Vector* y) const;
   SystemOutcome solve_together(const Order& order, const double* b, double* x);
   SystemOutcome flexibility_together(const Order& order, std::vector<int> chosen, Matrix* entries);
   std::string refuse_together(const Order& order, std::string options);
+  /// Numbers and beginnings of the rows of all ranks.
+  struct Parts {
+    std::vector<int> counts, firsts;
+  };
+  Parts parts(std::int64_t rows) const;
+  std::vector<double> own_rows(std::int64_t rows, const double* vector) const;
+  void gather(const Vector& own, std::int64_t rows, Vector* all) const;
   std::vector<int> spread_nodes(const Order& order, const Scaled* matrix) const;
   std::vector<double> spread_motions(const Order& order, const Scaled* matrix) const;
   SystemOutcome set_sum(System& system, const Order& order, const Scaled* matrix, const std::vector<int>& node) const;
@@ -136,7 +146,11 @@ class Ranks {
   bool half_way_ = false;
   long iterations_ = 0;
   std::int64_t made_ = 0;
-  std::map<std::int64_t, std::unique_ptr<System>> systems_;
+  struct ScaledSystem {
+    std::unique_ptr<System> system;  // of S A S
+    std::vector<double> scale;       // diagonal of S, the rank's rows
+  };
+  std::map<std::int64_t, ScaledSystem> systems_;
   std::map<std::int64_t, KeptRows> kept_;
   std::map<std::int64_t, std::shared_ptr<const RankCells>> cells_;
   std::string failure_;

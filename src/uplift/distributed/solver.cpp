@@ -20,8 +20,8 @@ namespace {
 
 class PetscFactor : public FactorWithReach {
  public:
-  PetscFactor(std::int64_t system, Vector scale, double nonzeros, double reach)
-      : system_(system), scale_(std::move(scale)), nonzeros_(nonzeros), reach_(reach) {}
+  PetscFactor(std::int64_t system, Index rows, double nonzeros, double reach)
+      : system_(system), rows_(rows), nonzeros_(nonzeros), reach_(reach) {}
   ~PetscFactor() override { Ranks::all().release(system_); }
   PetscFactor(const PetscFactor&) = delete;
   PetscFactor& operator=(const PetscFactor&) = delete;
@@ -29,18 +29,12 @@ class PetscFactor : public FactorWithReach {
   /// An iterative method that does not converge leaves no number: the step that asked fails, and the program says why in the end.
   void solve(const Matrix& b, Matrix& x) const override { solve_to(b, x, 0); }
   void solve_to(const Matrix& b, Matrix& x, double residual) const override {
-    if (&x != &b) x = b;
-    x.array().colwise() *= scale_.array();
-    if (Ranks::all().solve(system_, x, x, residual).ok())
-      x.array().colwise() *= scale_.array();
-    else
-      x.setConstant(std::numeric_limits<double>::quiet_NaN());
+    if (!Ranks::all().solve(system_, b, x, residual).ok()) x.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   /// (A^-1)_tt of chosen unknowns t.
   SystemOutcome flexibility(const std::vector<int>& chosen, Matrix& entries) const {
-    SystemOutcome outcome = Ranks::all().flexibility(system_, scale_.size(), chosen, entries);
-    const Vector scale = scale_(chosen);
-    entries = (scale.asDiagonal() * (0.5 * (entries + entries.transpose())) * scale.asDiagonal()).eval();
+    SystemOutcome outcome = Ranks::all().flexibility(system_, rows_, chosen, entries);
+    entries = (0.5 * (entries + entries.transpose())).eval();
     return outcome;
   }
   double nonzeros() const override { return nonzeros_; }
@@ -48,7 +42,7 @@ class PetscFactor : public FactorWithReach {
 
  private:
   std::int64_t system_;
-  Vector scale_;
+  Index rows_;
   double nonzeros_, reach_;
 };
 
@@ -129,9 +123,8 @@ class PetscSolver final : public DistributedSolver {
     Ranks::Made made = Ranks::all().make(a, scale, settings_.options, motions_);
     if (!made.outcome.ok())
       return {.factor = nullptr, .failed_unknown = -1, .why = std::move(made.outcome.why), .too_large = made.outcome.too_large};
-    return {.factor = std::make_unique<PetscFactor>(made.system, std::move(scale), made.nonzeros, settings_.reach),
-            .failed_unknown = -1,
-            .why = {}};
+    return {
+        .factor = std::make_unique<PetscFactor>(made.system, a.rows(), made.nonzeros, settings_.reach), .failed_unknown = -1, .why = {}};
   }
   FactorCost predict_sum(const SymmetricSum& a) const override {
     FactorCost cost;

@@ -64,10 +64,10 @@ namespace {
 
 static_assert(small_bulk <= most_undistributed);
 
-/// Stiffness with the geometric one; empty without.
+/// Stiffness with the geometric one; empty without, and where the stiffness is distributed.
 Sparse second_order(const Model& model, const Sparse* geometric) {
   Sparse sum;
-  if (geometric != nullptr) sum = model.stiffness + *geometric;
+  if (geometric != nullptr && model.distributed == nullptr) sum = model.stiffness + *geometric;
   return sum;
 }
 
@@ -86,9 +86,25 @@ Bulk::Bulk(const Model& model, const Sparse* axial)
       damping(model.distributed ? BulkMatrix(distributed_terms(model, 0, 1, 0), nullptr) : BulkMatrix(damping_matrix, small)),
       model_(model) {
   massless.assign(static_cast<std::size_t>(unknowns), 1);
+  if (distributed()) {
+    const Vector diagonal = mass_diagonal();
+    for (int i = 0; i < unknowns; ++i) massless[static_cast<std::size_t>(i)] = diagonal[i] == 0;
+    return;
+  }
   for (int column = 0; column < mass_matrix.outerSize(); ++column)
     for (Sparse::InnerIterator entry(mass_matrix, column); entry; ++entry)
       if (entry.value() != 0) massless[static_cast<std::size_t>(column)] = 0;
+}
+
+Vector Bulk::damping_diagonal() const {
+  return distributed() ? SymmetricSum(upper(0, 1, 0)).diagonal() : Vector(damping_matrix.diagonal());
+}
+
+Vector Bulk::stiffness_diagonal() const {
+  if (!distributed()) return stiffness_matrix.diagonal();
+  Vector diagonal = diagonal_of(model_, &Model::stiffness);
+  if (geometric != nullptr) diagonal += Vector(geometric->diagonal());
+  return diagonal;
 }
 
 OwnedSum Bulk::upper(double k, double c, double m) const {

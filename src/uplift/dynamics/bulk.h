@@ -8,6 +8,7 @@
 #include "uplift/dynamics/scheme.h"
 #include "uplift/math/small_product.h"
 #include "uplift/math/symmetric_sum.h"
+#include "uplift/model/matrix_sum.h"
 #include "uplift/model/model.h"
 
 // The linear bulk (soil and structure without the interfaces) during one stage: products with K, C and M, and the matrix of a step.
@@ -58,10 +59,14 @@ class Bulk {
   Bulk& operator=(const Bulk&) = delete;
   int unknowns = 0;
   bool small = false;
-  const Sparse &stiffness_matrix, &mass_matrix, &damping_matrix;  // of distributed matrices what Model has of them: the diagonals
+  const Sparse &stiffness_matrix, &mass_matrix, &damping_matrix;  // of distributed matrices nothing
   const Sparse* geometric;  // part of stiffness_matrix that the axial forces make; null: none. It must stay alive
   BulkMatrix stiffness, mass, damping;
   std::vector<char> massless;  // per free unknown
+  /// Of distributed matrices the processes are asked for them.
+  Vector stiffness_diagonal() const;
+  Vector damping_diagonal() const;
+  Vector mass_diagonal() const { return diagonal_of(model_, &Model::mass); }
   /// The upper triangle of k K + c C + m M; a factor of 0 leaves a matrix out.
   OwnedSum upper(double k, double c, double m) const;
   Sparse stiffness_among(const std::vector<int>& unknowns) const;

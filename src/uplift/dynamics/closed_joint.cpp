@@ -14,9 +14,8 @@ namespace {
 /// Diagonal of K at the unknowns that interfaces touch, zero where it is but the round-off of terms that cancel: solids inside a rigid body
 /// resist none of its motions. The sizes of the terms take a pass over all elements, which is made only where a diagonal is small. Unknowns
 /// of a reduced model reach all elements, and are left as they are.
-Vector resisting_diagonal(const Model& model, const Sparse& stiffness_matrix, const Sparse& b) {
+Vector resisting_diagonal(const Model& model, Vector diagonal, const Sparse& b) {
   constexpr double small = 1e-9, round_off = 1e-13;
-  Vector diagonal = stiffness_matrix.diagonal();
   const double suspicious = diagonal.size() > 0 ? small * diagonal.maxCoeff() : 0;
   const std::vector<int> touched = touched_unknowns(b);
   if (is_reduced(model) || std::ranges::none_of(touched, [&](int i) { return diagonal[i] > 0 && diagonal[i] < suspicious; }))
@@ -47,8 +46,8 @@ Sparse joint_stiffness(const Sparse& b, const Vector& d) {
   return b.transpose() * d.asDiagonal() * b;
 }
 
-Vector stiffness_of_parts(const Model& model, const Sparse& stiffness_matrix, const Sparse& b) {
-  const Vector diagonal = resisting_diagonal(model, stiffness_matrix, b);
+Vector stiffness_of_parts(const Model& model, const Vector& stiffness_diagonal, const Sparse& b) {
+  const Vector diagonal = resisting_diagonal(model, stiffness_diagonal, b);
   Vector compliance = Vector::Zero(b.rows());
   for (int column = 0; column < b.outerSize(); ++column)
     for (Sparse::InnerIterator entry(b, column); entry; ++entry)
@@ -56,17 +55,17 @@ Vector stiffness_of_parts(const Model& model, const Sparse& stiffness_matrix, co
   return compliance.unaryExpr([](double each) { return each > 0 ? 1 / each : std::numeric_limits<double>::infinity(); });
 }
 
-Vector closed_joint(const Model& model, const Sparse& stiffness_matrix, const Sparse& b, const Behaviours& behaviours) {
+Vector closed_joint(const Model& model, const Vector& stiffness_diagonal, const Sparse& b, const Behaviours& behaviours) {
   int rows = 0;
   for (const Interface& interface : model.interfaces) rows += interface.rows();
   Vector result = Vector::Zero(rows);
   double largest = 0;
-  for (int i = 0; i < model.free(); ++i) largest = std::max(largest, stiffness_matrix.coeff(i, i));
+  for (int i = 0; i < model.free(); ++i) largest = std::max(largest, stiffness_diagonal[i]);
   const bool rigid = !(largest > 0);
   if (rigid) largest = stiffness_under_rigid_bodies(model);
   // A joint far stiffer than the structure would leave nothing of the structure's stiffness in the factored sum once it is taken back.
   constexpr double stiffest = 1e6, beside_parts = 1e3;
-  const Vector parts = stiffness_of_parts(model, stiffness_matrix, b);
+  const Vector parts = stiffness_of_parts(model, stiffness_diagonal, b);
   int first = 0;
   for (std::size_t i = 0; i < model.interfaces.size(); ++i) {
     const Interface& interface = model.interfaces[i];

@@ -110,7 +110,7 @@ LoadSteps::LoadSteps(const StageModel& stage, const ContactChoice& contact, cons
       gap_(stage.gap),
       motion_(Vector::Zero(stage.gap.size())),
       blocks_(blocks_of(stage.model, contact.laws)) {
-  blocks_.shift = closed_joint(stage.model, solver.matrices_of(stage.model).stiffness, stage.b, contact.laws);
+  blocks_.shift = closed_joint(stage.model, diagonal_of(solver.matrices_of(stage.model), &Model::stiffness), stage.b, contact.laws);
   assemble();
   if (yielding_.any()) {
     newton_ = std::make_unique<PlasticNewton>(yielding_, SymmetricSum(matrix_).diagonal(), options.plastic);
@@ -137,7 +137,7 @@ OwnedSum LoadSteps::softened(const Sparse& d) const {
 /// Where the matrix or a load step fails: a joint that is no stiffer than the parts that it joins. It is as exact (any stiffness is), but
 /// soft parts on both sides are not lost in its round-off.
 void LoadSteps::soften_joint() {
-  blocks_.shift = blocks_.shift.cwiseMin(stiffness_of_parts(stage_.model, stage_.bulk.stiffness_matrix, stage_.b));
+  blocks_.shift = blocks_.shift.cwiseMin(stiffness_of_parts(stage_.model, stage_.bulk.stiffness_diagonal(), stage_.b));
   assemble();
 }
 
@@ -166,7 +166,7 @@ std::string LoadSteps::imbalance(const Vector& unbalanced, const Vector& moved) 
   double size = std::max({size_of(load_), size_of(reaction_), size_of(first_load_)});
   if (stage_.b.rows() > 0) size = std::max(size, size_of(stage_.b.cwiseAbs().transpose() * force_.cwiseAbs()));
   Index stiffest = 0, worst = 0;
-  const double round_off = stage_.bulk.stiffness_matrix.diagonal().cwiseProduct(moved).cwiseAbs().maxCoeff(&stiffest);
+  const double round_off = stage_.bulk.stiffness_diagonal().cwiseProduct(moved).cwiseAbs().maxCoeff(&stiffest);
   const double lost = 64 * std::numeric_limits<double>::epsilon() * round_off;
   if (lost > 1e-3 * size)
     return fmt::format(

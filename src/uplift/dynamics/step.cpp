@@ -62,7 +62,7 @@ Stepper::Stepper(const StageModel& stage, const ContactChoice& contact, const Im
     impacts_ = std::make_unique<ContactImpacts>(
         *impact_, options_.scheme, stage.bulk, ContactRows(stage.model, stage.bulk, stage.b, motion_, accelerator().spread(stage.b)),
         blocks_of(stage.model, contact.laws).blocks, [this](const State& state, Vector& forces) { forces_at(state, forces); }, counts);
-  if (yielding_.any()) newton_ = std::make_unique<PlasticNewton>(yielding_, stage.bulk.stiffness_matrix.diagonal(), options.plastic);
+  if (yielding_.any()) newton_ = std::make_unique<PlasticNewton>(yielding_, stage.bulk.stiffness_diagonal(), options.plastic);
 }
 
 const Accelerator& Stepper::accelerator() const {

@@ -116,7 +116,7 @@ OwnedSum StepSizes::damped_mass(double w) const {
   const Bulk& bulk = stage_.bulk;
   constexpr double trace = 1e-12;
   OwnedSum sum = bulk.upper(0, w, 1);
-  const Vector diagonal = bulk.mass_matrix.diagonal() + w * bulk.damping_matrix.diagonal() + w * w * bulk.stiffness_matrix.diagonal();
+  const Vector diagonal = bulk.mass_diagonal() + w * bulk.damping_diagonal() + w * w * bulk.stiffness_diagonal();
   std::vector<Triplet> light;
   for (int i = 0; i < bulk.unknowns; ++i)
     if (bulk.massless[static_cast<std::size_t>(i)] != 0) light.emplace_back(i, i, trace * diagonal[i]);
@@ -137,7 +137,8 @@ Vector StepSizes::stiffness_for_massless() const {
     if (bulk.massless[static_cast<std::size_t>(column)] != 0)
       for (Sparse::InnerIterator entry(stage_.b, column); entry; ++entry) touching[entry.row()] = 1;
   if (touching.isZero(0) || unresisted_motion(stage_.model, Resistance::dynamic_open).size() == 0) return {};
-  return touching.cwiseProduct(closed_joint(stage_.model, solver_.matrices_of(stage_.model).stiffness, stage_.b, contact_.laws));
+  return touching.cwiseProduct(
+      closed_joint(stage_.model, diagonal_of(solver_.matrices_of(stage_.model), &Model::stiffness), stage_.b, contact_.laws));
 }
 
 Sparse StepSizes::matrix_of(const StepSize& size) const {

@@ -24,7 +24,7 @@ class DistributedMatrix {
   virtual ~DistributedMatrix() = default;
   /// y = sum of factor * A x. All terms are matrices of one job, of the same size, and this is one of them.
   virtual void multiply(std::span<const DistributedTerm> sum, const Vector& x, Vector& y) const = 0;
-  virtual const Vector& diagonal() const = 0;
+  virtual Vector diagonal() const = 0;
   /// Entries that each process keeps.
   virtual const std::vector<double>& entries() const = 0;
 };
@@ -57,9 +57,9 @@ class MatrixHome {
   virtual bool takes_cells() const = 0;
   virtual std::shared_ptr<const DistributedCells> keep_cells(Index rows, const std::vector<EqualCells>& classes) const = 0;
   /// The matrix whose columns `make(first, count)` returns, complete and rows x count, but for what cells add to it. `make` is called once
-  /// for each process, and what it has returned goes there before it is called again. `diagonal`: of the whole matrix.
+  /// for each process, and what it has returned goes there before it is called again.
   using MakeColumns = std::function<Sparse(Index first, Index count)>;
-  virtual std::shared_ptr<const DistributedMatrix> keep(Vector diagonal, const MakeColumns& make, const EqualCellPart& part) const = 0;
+  virtual std::shared_ptr<const DistributedMatrix> keep(Index rows, const MakeColumns& make, const EqualCellPart& part) const = 0;
 };
 
 /// A symmetric matrix to be looked at: the upper triangle of what stands here, and terms whose rows are distributed; none as a rule.

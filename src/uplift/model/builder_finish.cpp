@@ -71,15 +71,7 @@ void ModelBuilder::distribute(Model& model) const {
         if (const auto own = static_cast<Index>(i) % local.rows(); rows[i] >= 0) diagonal[rows[i]] += local(own, own);
     }
     return home_->keep(
-        diagonal, [&](Index first, Index count) { return elements.columns(model.expansion, diagonal, first, count); }, part);
-  };
-  const auto as_sparse = [](const Vector& diagonal) {
-    Sparse matrix(diagonal.size(), diagonal.size());
-    matrix.reserve(diagonal.size());
-    for (Index i = 0; i < diagonal.size(); ++i)
-      if (diagonal[i] != 0) matrix.insert(i, i) = diagonal[i];
-    matrix.makeCompressed();
-    return matrix;
+        model.free(), [&](Index first, Index count) { return elements.columns(model.expansion, diagonal, first, count); }, part);
   };
   auto made = std::make_shared<DistributedMatrices>();
   made->cells = cells;
@@ -87,9 +79,6 @@ void ModelBuilder::distribute(Model& model) const {
   made->mass = keep(&Local::mass);
   made->damping = keep(&Local::damping);
   if (made->damping->diagonal().isZero(0)) made->damping.reset();
-  as_sparse(made->stiffness->diagonal()).swap(model.stiffness);
-  as_sparse(made->mass->diagonal()).swap(model.mass);
-  model.damping.resize(model.free(), model.free());
   model.distributed = std::move(made);
 }
 

@@ -175,11 +175,12 @@ namespace {
 /// Throws where an interface touches an unknown without mass that `refused` names.
 template <class Refused>
 void require_mass(const Model& model, const Refused& refused) {
+  const Vector mass = diagonal_of(model, &Model::mass);
   for (std::size_t k = 0; k < model.interfaces.size(); ++k) {
     const Sparse& b = model.interfaces[k].b;
     for (int i = 0; i < model.free(); ++i)
       for (Sparse::InnerIterator entry(b, i); entry; ++entry)
-        if (entry.value() != 0 && !(model.mass.coeff(i, i) > 0) && refused(model.interfaces[k], i))
+        if (entry.value() != 0 && !(mass[i] > 0) && refused(model.interfaces[k], i))
           throw InputError(model.assembly.interface_where[k], "interface." + model.interfaces[k].name,
                            "a mass on everything that the interface touches",
                            fmt::format("zero mass where mass is needed: {} has none", model.unknown_name(i)));

@@ -38,6 +38,11 @@ OwnedSum matrix_sum(const Model& model, double k, double c, double m) {
   return {Sparse(model.free(), model.free()), distributed_terms(model, k, c, m)};
 }
 
+Vector diagonal_of(const Model& model, Sparse Model::*matrix) {
+  if (model.distributed == nullptr) return (model.*matrix).diagonal();
+  return (matrix == &Model::mass ? model.distributed->mass : model.distributed->stiffness)->diagonal();
+}
+
 Vector stiffness_times(const Model& model, const Vector& u) {
   if (model.distributed == nullptr) return model.stiffness * u;
   Vector force(u.size());

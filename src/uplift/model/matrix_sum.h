@@ -16,6 +16,9 @@ OwnedSum matrix_sum(const Model& model, double k, double c, double m);
 /// The same terms where the matrices are distributed; else none.
 std::vector<DistributedTerm> distributed_terms(const Model& model, double k, double c, double m);
 
+/// Diagonal of K or M, which of distributed matrices the processes are asked for.
+Vector diagonal_of(const Model& model, Sparse Model::*matrix);
+
 /// K u
 Vector stiffness_times(const Model& model, const Vector& u);
 

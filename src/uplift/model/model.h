@@ -124,7 +124,7 @@ struct Model {
 
   Sparse expansion;                 // T^T, free x full: column i is the row of T for full unknown i
   Sparse stiffness, mass, damping;  // free x free; damping: Rayleigh, dashpots, modal
-  // null: the matrices above are whole. Else stiffness and mass above hold their diagonals alone and damping nothing (model/matrix_sum.h)
+  // null: the matrices above are whole; else they hold nothing (model/matrix_sum.h)
   std::shared_ptr<const DistributedMatrices> distributed;
   std::vector<int> kept;  // full unknown that each free unknown is; empty: a free unknown is no full one (is_reduced)
   Assembly assembly;

@@ -13,9 +13,9 @@ namespace uplift {
 namespace {
 
 /// What round-off makes of the strain energy [J]: a stiff part that goes with soft ground strains by the difference of large forces.
-double sum_round_off(const Sparse& stiffness, const Vector& displacement) {
+double sum_round_off(const Vector& stiffness, const Vector& displacement) {
   double sum = 0;
-  for (Index i = 0; i < displacement.size(); ++i) sum += stiffness.coeff(i, i) * displacement[i] * displacement[i];
+  for (Index i = 0; i < displacement.size(); ++i) sum += stiffness[i] * displacement[i] * displacement[i];
   return std::numeric_limits<double>::epsilon() * sum;
 }
 
@@ -135,7 +135,7 @@ void Runner::March::begin_scales() {
     run_.initial_scale = energies.kinetic;
     run_.round_off_energy =
         1e-8 * (energies.strain + energies.stored) / (runner_.plan_.created_limit > 0 ? std::min(runner_.plan_.created_limit, 1.0) : 1);
-    run_.round_off_energy += 100 * sum_round_off(bulk_.stiffness_matrix, state_.displacement);
+    run_.round_off_energy += 100 * sum_round_off(bulk_.stiffness_diagonal(), state_.displacement);
   }
   for (const TimeLoad& time_load : runner_.model_.time_loads)
     if (time_load.dead) run_.round_off_energy += 1e-10 * time_load.shape.lpNorm<1>() * std::abs(time_load.function->value(state_.time));

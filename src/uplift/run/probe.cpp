@@ -44,7 +44,7 @@ ContactModel static_probe(const Model& model, const LinearSolver& solver, Linear
   const Sparse b = stack_interfaces(model);
   const Behaviours behaviours(model, NoContact(), nullptr);
   OwnedSum matrix = bulk.upper(1, 0, 0);
-  const Vector joint = closed_joint(model, bulk.stiffness_matrix, b, behaviours);
+  const Vector joint = closed_joint(model, bulk.stiffness_diagonal(), b, behaviours);
   matrix.here += Sparse(joint_stiffness(b, joint).triangularView<upper_triangle>());
   return with_compliance(blocks_of(model, behaviours), matrix, b, model, bulk, solver, counts, why);
 }

@@ -15,6 +15,7 @@
 #include "uplift/mesh/torn.h"
 #include "uplift/model/damping.h"
 #include "uplift/model/hinges.h"
+#include "uplift/model/matrix_sum.h"
 #include "uplift/model/tuned_mass.h"
 
 namespace uplift {
@@ -218,9 +219,10 @@ void warn_massless(const BuiltCase& built, std::vector<std::string>& said) {
   const Model& model = built.model;
   if (!dynamic_stage(built.plan)) return;
   std::string names;
+  const Vector mass = diagonal_of(model, &Model::mass);
   for (int i = 0; i < model.free(); ++i) {
     const int node = model.space.node_of(model.kept[static_cast<std::size_t>(i)]);
-    if (model.mass.coeff(i, i) != 0) continue;
+    if (mass[i] != 0) continue;
     const bool base = std::ranges::any_of(
         built.facts, [&](const InterfaceFacts& facts) { return std::ranges::find(facts.upper, node) != facts.upper.end(); });
     if (base && names.size() < 60) names += (names.empty() ? "" : ", ") + model.unknown_name(i);
