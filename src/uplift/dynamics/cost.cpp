@@ -70,7 +70,8 @@ BulkCost predict_bulk(const Model& model, const LinearSolver& solver, const Bulk
   const double steps = (use.propagates ? 2 : 1) * use.step_sizes;
   const double blocks = interface_blocks(rows, static_cast<double>(cost.touched));
   cost.interface_bytes = (steps + (use.impacts ? 1 : 0)) * blocks;
-  const double kept = (use.keeps_mass ? cost.mass.bytes : 0) + steps * cost.step.bytes + cost.interface_bytes + pair + 20 * 8 * n;
+  const double vectors = solver.distributed() ? 14 : 17;  // of the step and of the balance of an instant
+  const double kept = (use.keeps_mass ? cost.mass.bytes : 0) + steps * cost.step.bytes + cost.interface_bytes + pair + vectors * 8 * n;
   double more = std::max(kept, (steps > 1 ? kept : cost.step.bytes) + cost.step.working_bytes);
   // a factor of M that is kept is made after that of the first step size, one for the acceleration of the beginning alone before it
   more = std::max(more, (use.keeps_mass ? cost.step.bytes : 0) + cost.mass.bytes + cost.mass.working_bytes);
