@@ -13,7 +13,7 @@ void keep(const double* now, int count, int i, int points, double* history) {
 void PointLaw::respond(const Batch& batch, const double* from, const double* to, const double* old, const LawResponse& response) const {
   double now[most_history];
   for (int i = 0; i < batch.points; ++i) {
-    const Point point = advance(batch.step, from[i], to[i], {old + i, batch.points}, now);
+    const Point point = advance(batch.step, from[i], to[i], {old, batch.points, i}, now);
     response.traction[i] = point.end;
     if (response.slope != nullptr) response.slope[i] = point.end_slope;
     keep(now, num_history(), i, batch.points, response.now);
@@ -23,7 +23,7 @@ void PointLaw::respond(const Batch& batch, const double* from, const double* to,
 void PointLaw::mean(const Batch& batch, const double* from, const double* to, const double* old, const LawResponse& response) const {
   double now[most_history];
   for (int i = 0; i < batch.points; ++i) {
-    const Point point = advance(batch.step, from[i], to[i], {old + i, batch.points}, now);
+    const Point point = advance(batch.step, from[i], to[i], {old, batch.points, i}, now);
     response.traction[i] = point.mean;
     if (response.slope != nullptr) response.slope[i] = point.mean_slope;
     if (response.end != nullptr) response.end[i] = point.end;
@@ -34,7 +34,7 @@ void PointLaw::mean(const Batch& batch, const double* from, const double* to, co
 
 void PointLaw::energy(const Batch& batch, const double* opening, const double* history, double* stored, double* dissipated) const {
   for (int i = 0; i < batch.points; ++i) {
-    const PointEnergy energy = energy_at(opening[i], {history + i, batch.points});
+    const PointEnergy energy = energy_at(opening[i], {history, batch.points, i});
     if (stored != nullptr) stored[i] = energy.stored;
     if (dissipated != nullptr) dissipated[i] = energy.dissipated;
   }

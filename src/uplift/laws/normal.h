@@ -12,9 +12,9 @@ struct FusedEvaluation;
 
 /// Memory of one point in a structure of arrays.
 struct Memory {
-  const double* first;
-  int stride;
-  double operator[](int variable) const { return first[variable * stride]; }
+  const double* all;  // of all points; none of a law without memory
+  int stride, point = 0;
+  const double& operator[](int variable) const { return all[variable * stride + point]; }
 };
 
 /// A quantity between 0 and 1 along the path of one step, with its derivatives with respect to the opening at the end of the step [1/m].

@@ -93,7 +93,7 @@ class Springs final : public NormalLaw {
 
   Surface surface(double step, double from, double to, Memory old) const override {
     double traction, taken;
-    viscous(Batch{1, 1, step}, &from, &to, damping_ > 0 ? old.first : &from, {.traction = &traction, .now = &taken}, false);
+    viscous(Batch{1, 1, step}, &from, &to, damping_ > 0 ? &old[0] : &from, {.traction = &traction, .now = &taken}, false);
     Along open{from > 0 ? 1.0 : 0.0, to > 0 ? 1.0 : 0.0, 0, 0, 0};
     const Path path(from, to);
     open.mean = path.moves() ? path.above(0).share : open.end;

@@ -165,7 +165,7 @@ class WithSlip : public TangentialPart {
     for (int i = 0; i < n; ++i) {
       const Plane e = plane(opening, tangents, n, i) - plane(history, tangents, n, i);
       const double d = opening[batch.normal() + i];
-      if (stored != nullptr) stored[i] += 0.5 * transfer(normal, d, {normal_history + i, n}) * stiffness_ * dot(e, e);
+      if (stored != nullptr) stored[i] += 0.5 * transfer(normal, d, {normal_history, n, i}) * stiffness_ * dot(e, e);
       if (dissipated != nullptr) dissipated[i] += history[tangents * n + i];
     }
   }
@@ -217,7 +217,7 @@ class OpenFree final : public WithSlip {
             Bound&) const override {
     const int normal = call.batch.normal();
     const Along o =
-        call.normal.surface(call.batch.step, call.from[normal + i], call.to[normal + i], {call.normal_old + i, call.batch.points}).openness;
+        call.normal.surface(call.batch.step, call.from[normal + i], call.to[normal + i], {call.normal_old, call.batch.points, i}).openness;
     const double w0 = 1 - o.begin, w1 = 1 - o.end, gap = o.end - o.begin;
     const double f = gap != 0 ? std::clamp((o.end - o.mean) / gap, 0.0, 1.0) : 1, rest = 1 - f;
     const double f_slope = gap != 0 ? (rest * o.end_slope - o.mean_slope) / gap : 0;
@@ -266,7 +266,7 @@ class CoulombShear final : public WithSlip {
     const int normal = call.batch.normal(), last = call.batch.components * call.batch.components - 1;
     Surface surface;
     if (cohesion_ > 0 || average)
-      surface = call.normal.surface(call.batch.step, call.from[normal + i], call.to[normal + i], {call.normal_old + i, call.batch.points});
+      surface = call.normal.surface(call.batch.step, call.from[normal + i], call.to[normal + i], {call.normal_old, call.batch.points, i});
     const double pull = call.response.traction[normal + i];
     const double bond = average ? surface.damage.mean : surface.damage.end;
     const double bond_slope = average ? surface.damage.mean_slope : surface.damage.end_slope;

@@ -18,7 +18,6 @@ constexpr double nothing = 0;
 Recorder::Recorder(const Model& model, const RunPlan& plan, const State& state, const Energies& energies, const Stepper* stepper,
                    const std::vector<InterfaceView>& views, const ForceStage& stage, long steps, double step, Recorded& result)
     : model_(model),
-      plan_(plan),
       state_(state),
       energies_(energies),
       stepper_(stepper),

@@ -67,7 +67,6 @@ class Recorder {
   void combine(std::size_t count);
 
   const Model& model_;
-  const RunPlan& plan_;
   const State& state_;
   const Energies& energies_;
   const Stepper* stepper_;

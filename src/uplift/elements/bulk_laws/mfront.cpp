@@ -187,7 +187,7 @@ double number_of(const Values& entry) {
 
 /// The material properties in the order of the library: Young's modulus and Poisson's ratio of the solid, the others of the case.
 std::vector<double> properties_from(const Values& law, const MfrontBehaviour& behaviour, const ElasticMaterial& material) {
-  constexpr std::string_view young = "YoungModulus", poisson = "PoissonRatio";
+  static constexpr std::string_view young = "YoungModulus", poisson = "PoissonRatio";
   const std::vector<Values>& given = law.tables("properties");
   const auto of_solid = [](std::string_view name) { return name == young || name == poisson; };
   std::vector<std::string> names;
