@@ -68,7 +68,7 @@ function capacity_table(study: Study): Table[] {
     title: "Capacities",
     caption:
       `A_m: median${factors ? ", times the medians of the factors of safety" : ""}. \u03b2_R: randomness, from motion to motion; \u03b2_U: uncertainty of knowledge; both of the runs${factors}. ` +
-      "HCLPF: A_m \u00b7 exp(\u22121.65 (\u03b2_R + \u03b2_U)), 95 % confidence of less than 5 % probability. With \u03b2_C = \u221a(\u03b2_R\u00b2 + \u03b2_U\u00b2), of the composite curve, follow " +
+      "HCLPF: A_m \u00b7 exp(\u22121.65 (\u03b2_R + \u03b2_U)), 95 % confidence of less than 5 % probability. By the composite curve, with \u03b2_C = \u221a(\u03b2_R\u00b2 + \u03b2_U\u00b2): " +
       ["the intensity of 1 % probability", ...(site ? ["the probabilities at the design motion and at 1.5 times it"] : []), ...(hazard ? ["the annual rate"] : [])].join(", ") + ".",
     columns: [
       column("name", "Limit", "text"), column("median", "A_m", "number", intensity_unit(study)), column("beta_r", "\u03b2_R", "number"), column("beta_u", "\u03b2_U", "number"), column("beta_c", "\u03b2_C", "number"),

@@ -81,7 +81,7 @@ function facts_of(study: Study, limit: Limit): Fact[] {
     const beside = composite === undefined ? "" : factors ? `; ${risk.rate.toExponential(2)} by the fitted curve alone` : `; ${composite.toExponential(2)} with the composite \u03b2 of motions and samples`;
     facts.push({
       label: "Annual rate", value: (factors && composite !== undefined ? composite : risk.rate).toExponential(2),
-      detail: `exceedances a year, by the hazard curve of the plan${factors && composite !== undefined ? ", with the factors of safety" : ""}${caution}${beside}`,
+      detail: `exceedances a year, by the hazard curve of the plan${!factors ? "" : composite !== undefined ? ", with the factors of safety" : ", without the factors of safety"}${caution}${beside}`,
     });
   }
   const without = study.failures.length;

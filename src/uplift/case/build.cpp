@@ -225,15 +225,15 @@ std::shared_ptr<const Model> resting_model(const Case& read, const RunSpec& spec
   return rest;
 }
 
-/// A bonded joint in the place of a constraint is much stiffer than the structure: an initial displacement that opens it would fling the
-/// structure away. The bonded run begins without.
-void leave_out_opening_displacement(BuiltCase& built) {
+/// A bonded joint in the place of a constraint is much stiffer than the structure: an initial displacement that moves one side of it
+/// against the other would fling the structure away. The bonded run begins without it. `constraints`: of the case, for each interface.
+void leave_out_displacement(const std::vector<char>& constraints, BuiltCase& built) {
   Vector& displacement = built.plan.initial_displacement;
   if (displacement.size() == 0) return;
   const double least = 1e-9 * displacement.cwiseAbs().maxCoeff();
-  if (std::ranges::any_of(built.model.interfaces,
-                          [&](const Interface& interface) { return Vector(interface.b * displacement).cwiseAbs().maxCoeff() > least; }))
-    displacement.resize(0);
+  for (std::size_t k = 0; k < constraints.size(); ++k)
+    if (constraints[k] && displacement.size() > 0 && Vector(built.model.interfaces[k].b * displacement).cwiseAbs().maxCoeff() > least)
+      displacement.resize(0);
 }
 
 /// N/m; of rigid bodies alone any number does.
@@ -380,6 +380,8 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
   plan.expected_to_fail = spec.expected_to_fail;
   plan.solver = bulk_solver(read);
   plan.interface_solver = interface_solver(read.input->interface_solver);
+  std::vector<char> constraints;
+  for (const Interface& interface : built.model.interfaces) constraints.push_back(interface.cone != nullptr);
   adapt_laws(read, spec, built);
   if (released) {
     check_release(read.input->stages, plan.stages);
@@ -391,7 +393,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
       stage != nullptr && plan.impact->acts() && (!stage->path_average || plan.method->constrains()))
     check_impulses(built.model);
   add_initial(*read.input, names, built);
-  if (spec.bonded && built.laws_of_step) leave_out_opening_displacement(built);
+  if (spec.bonded) leave_out_displacement(constraints, built);
   find_shown(read, names, built);
   plan.created_limit = read.input->energy.created_limit;
   plan.stop_at_limit = read.input->energy.stop_at_limit;

@@ -40,14 +40,17 @@ std::string few_points(const Interface& interface, double uplifted, const Interf
 }  // namespace
 
 std::string damped_impacts(const BuiltCase& built, const VerdictNumbers& numbers, double beta) {
-  if (!(beta > 0) || numbers.beams.empty() || !dynamic_stage(built.plan)) return "";
+  const RunPlan& plan = built.plan;
+  if (!(beta > 0) || numbers.beams.empty() || !dynamic_stage(plan) || !plan.method->constrains() || !plan.impact->acts()) return "";
   for (std::size_t k = 0; k < std::min(numbers.interfaces.size(), built.model.interfaces.size()); ++k) {
-    const VerdictNumber* ratio = find_number(numbers.interfaces[k].numbers, "max_uplifted_ratio");
-    if (built.model.interfaces[k].cone && ratio && ratio->value > 0)
+    const std::vector<VerdictNumber>& said = numbers.interfaces[k].numbers;
+    const VerdictNumber *ratio = find_number(said, "max_uplifted_ratio"), *opening = find_number(said, "max_opening");  // of a wall
+    const bool opens = (ratio && ratio->value > 0) || (opening && opening->value > plan.gap_tolerance);
+    if (built.model.interfaces[k].cone && opens)
       return fmt::format(
           "{} opens on constraints, whose impacts change velocities at once: with damping in proportion to the stiffness (beta = {:.3g} s) "
-          "the largest section forces of the beams contain a damping force that grows as the step falls, which no step settles; take a "
-          "joint of finite stiffness for them, or alpha alone",
+          "the largest section forces of the beams contain a damping force that grows as the step falls and does not converge; use a joint "
+          "of finite stiffness, or mass-proportional damping only",
           numbers.interfaces[k].name, beta);
   }
   return "";

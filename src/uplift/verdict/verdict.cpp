@@ -330,7 +330,10 @@ void say_consequence(const FloorRun* floors, Verdict& verdict) {
     add("base moment", find_number(verdict.numbers.interfaces.front().numbers, "max_moment"));
     add("base shear", find_number(verdict.numbers.interfaces.front().numbers, "max_shear"));
   }
-  add(walls ? "moment of base and walls" : "moment of all bases", find_number(verdict.numbers.whole, "max_total_moment"));
+  add(!walls    ? "moment of all bases"
+      : several ? "moment of bases and walls"
+                : "moment of base and walls",
+      find_number(verdict.numbers.whole, "max_total_moment"));
   if (several)
     add(walls ? "horizontal force of bases and walls" : "shear of all bases", find_number(verdict.numbers.whole, "max_total_shear"));
   add("top motion", find_number(verdict.numbers.whole, "max_top_motion"));
@@ -347,8 +350,7 @@ void say_consequence(const FloorRun* floors, Verdict& verdict) {
   const auto& criteria = verdict.numbers.criteria;
   if (criteria.empty()) return;
   const auto met = std::ranges::count(criteria, CriterionResult::State::met, &CriterionResult::state);
-  verdict.consequence +=
-      fmt::format("{}{} of {} criteria met{}.", parts.empty() ? "" : " ", met, criteria.size(), several ? ", each base by itself" : "");
+  verdict.consequence += fmt::format("{}{} of {} criteria met.", parts.empty() ? "" : " ", met, criteria.size());
 }
 
 }  // namespace

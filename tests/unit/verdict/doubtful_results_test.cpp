@@ -150,8 +150,8 @@ TEST(EdgeWarnings, FewPointsAndNoBound) {
 /// 1 ms to 1/32 ms, which without the stiffness damping settle at 1.13 MN.
 TEST(EdgeWarnings, SectionForcesOfDampedImpacts) {
   const std::string envelope = "[[output.beam_envelope]]\nbeam = \"column\"\n";
-  const auto said = [&](const std::string& joint, double open, double beta, const std::string& more) {
-    const BuiltCase built = built_of(tower(shaken + more, "", joint));
+  const auto said = [&](const std::string& joint, double open, double beta, const std::string& more, const std::string& rule = "") {
+    const BuiltCase built = built_of(rule + tower(shaken + more, "", joint));
     const RunResult run = reaching(built, 4e5, 0.01, open);
     VerdictNumbers numbers = numbers_of(built, run, nullptr);
     if (!more.empty()) numbers.beams.emplace_back();
@@ -162,6 +162,7 @@ TEST(EdgeWarnings, SectionForcesOfDampedImpacts) {
   EXPECT_EQ(said("law = \"unilateral\"\n", 0, 1.5e-3, envelope), "") << "it stays closed";
   EXPECT_EQ(said("law = \"unilateral\"\n", 0.3, 1.5e-3, ""), "") << "no section forces";
   EXPECT_EQ(said(law, 0.3, 1.5e-3, envelope), "") << "a joint that gives way";
+  EXPECT_EQ(said("law = \"unilateral\"\n", 0.3, 1.5e-3, envelope, "impact = \"none\"\n"), "") << "no impact changes velocities";
 }
 
 /// A floor that only the uplifting run excites has no change, but an acceleration: 12.7 m/s2 where the bonded one has none.

@@ -38,7 +38,7 @@ std::string beam_of(const CaseCriterion& table, const RunPlan& plan) {
 
 Criterion criterion_of(const CaseCriterion& table, const Names& interfaces, const BuiltCase& built) {
   if (table.quantity->is("max_drift_without_rotation") && built.bases() > 1)
-    fail(table, "quantity", "a structure on one base for this number: several bases turn each by itself",
+    fail(table, "quantity", "a structure on one base for this number: each of several bases rotates by itself",
          std::to_string(built.bases()) + " bases");
   Criterion criterion{table.quantity, table.limit, table.source, -1, beam_of(table, built.plan)};
   if (table.interface) {

@@ -271,6 +271,7 @@ void write_loops(JsonWriter& json, const ReportInput& input, const std::vector<R
                     {}};
     const int number = static_cast<int>(k);
     for (const ReportRun& run : runs) {
+      if (k > 0 && run.built->bases() <= k) continue;  // of another case
       add_loop(tilts, run, {run.built->base_tilt(), number}, {run.built->base_moment(), number});
       add_loop(rotations, run, {run.built->base_rotation(), number}, {run.built->base_moment(), number});
     }

@@ -54,12 +54,12 @@ struct Chart {
 };
 /// Nothing without curves. `origin`: where a figure comes from whose case does not state it.
 void write_chart(JsonWriter& json, const Chart& chart, std::string_view origin = {});
-/// What an axis of a loop shows: a column times a factor, and where `other_factor` is not 0 another column of the same owner.
 /// Of several bases, the first four have figures of their own: " of i1" for the title, and the identity of a figure of base `base`.
 std::string of_base(const BuiltCase& built, std::size_t number);
 std::size_t bases_shown(const BuiltCase& built);
 std::string id_of(std::string_view id, std::size_t base);
 
+/// What an axis of a loop shows: a column times a factor, and where `other_factor` is not 0 another column of the same owner.
 struct LoopAxis {
   Request::Kind column;
   int of;  // full unknown or interface
@@ -85,11 +85,11 @@ void write_column(JsonWriter& json, const TableColumn& column);
 /// without curves for a cone.
 Chart law_chart(const ReportRun& run);
 
-/// The base before and after: gap and pressure along the first interface, plane models with pictures.
+/// The bases before and after: gap and pressure along each of the first four, plane models with pictures.
 std::vector<Chart> rest_charts(const ReportRun& run);
 /// Moment, rotation, vertical and horizontal force of a foundation against each other, with what limits them.
 std::vector<Chart> foundation_charts(const std::vector<ReportRun>& runs, std::size_t interface);
-/// Eccentricity and safeties of the first interface over time.
+/// Eccentricity and safeties of the first four bases over time.
 std::vector<Chart> safety_charts(const std::vector<ReportRun>& runs);
 
 }  // namespace uplift

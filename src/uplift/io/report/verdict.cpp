@@ -34,7 +34,7 @@ Chart safety_chart(const char* id, std::string title, const char* caption, BaseH
   const bool safety = which == BaseHistory::overturning_safety || which == BaseHistory::sliding_safety;
   Chart chart{id_of(id, base), "interface", std::move(title), caption, {"Time", "s"}, {safety ? "Safety" : "e/B", "1"}, {}};
   for (const ReportRun& run : runs) {
-    if (run.spec->bonded || run.result->steps.size() == 0 || run.built->facts.size() <= base) continue;
+    if (run.spec->bonded || run.result->steps.size() == 0 || run.built->facts.empty() || (base > 0 && run.built->bases() <= base)) continue;
     Curve curve;
     curve.label = curve.run = run.result->label;
     curve.failed = run.result->status == RunStatus::failed;
