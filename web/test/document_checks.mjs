@@ -117,7 +117,7 @@ function check_verdict(check, { interfaces: [base, wall], criteria: [criterion] 
   same("Largest gap", "swingText", undefined);
   same("Largest slip", "text", "2.00 mm");
   check.equal(base.above[0].text, "above 5.0 % for 85.0 ms", "the time above a threshold");
-  check.equal(`${criterion.label}: ${criterion.valueText}, ${criterion.limitText}`, "change of the base moment: -52 %, 10 %", "a criterion");
+  check.equal(`${criterion.label}: ${criterion.valueText}, ${criterion.limitText}`, "change of the base moment: -52 %, +10 %", "a criterion");
 }
 
 function check_tables(check, tables) {
