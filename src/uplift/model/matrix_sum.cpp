@@ -1,5 +1,7 @@
 #include "uplift/model/matrix_sum.h"
 
+#include <cassert>
+
 #include "uplift/math/upper_sum.h"
 #include "uplift/model/damping.h"
 #include "uplift/model/element_sum.h"
@@ -39,6 +41,7 @@ OwnedSum matrix_sum(const Model& model, double k, double c, double m) {
 }
 
 Vector diagonal_of(const Model& model, Sparse Model::*matrix) {
+  assert(matrix == &Model::mass || matrix == &Model::stiffness);
   if (model.distributed == nullptr) return (model.*matrix).diagonal();
   return (matrix == &Model::mass ? model.distributed->mass : model.distributed->stiffness)->diagonal();
 }

@@ -162,9 +162,9 @@ void correct(const Impact& impact, double factor, Vector& rate, ImpactScratch& s
 }
 
 void add_impulse(const Impact& impact, double factor, Vector& impulse, const ImpactScratch& scratch) {
+  if (impulse.size() == 0) return;
   const double *total = scratch.impulse.data(), *taken = scratch.taken.data(), weight = impact.velocity_weight;
   double* sum = impulse.data();
-  if (impulse.size() == 0) return;
 #pragma omp simd
   for (Index i = scratch.first; i < scratch.first + scratch.count; ++i) sum[i] += factor * (total[i] - weight * taken[i]);
 }

@@ -179,12 +179,12 @@ std::vector<View> motion_views(const BuiltCase& built) {
                      "m/s", Column::velocity, built.top_sway(), 1});
   }
   if (built.base >= 0) {
-    const std::string of = built.facts.empty() ? "" : of_base(built, 0);  // `base` is a node of the first one
-    views.push_back({"base_displacement", "response", "Displacement of the base" + of, "Vertical displacement of the base.", "Displacement",
-                     "m", Column::displacement, built.base_lift(), 1});
-    views.push_back({"base_velocity", "response", "Velocity of the base" + of, "Vertical velocity of the base.", "Velocity", "m/s",
+    const auto title = [&](std::string_view of_the_base) { return title_of(of_the_base, built, 0); };  // `base` is a node of the first one
+    views.push_back({"base_displacement", "response", title("Displacement of the base"), "Vertical displacement of the base.",
+                     "Displacement", "m", Column::displacement, built.base_lift(), 1});
+    views.push_back({"base_velocity", "response", title("Velocity of the base"), "Vertical velocity of the base.", "Velocity", "m/s",
                      Column::velocity, built.base_lift(), 1});
-    views.push_back({"base_rotation", "response", "Rotation of the base" + of, about(built), "Rotation", "rad", Column::displacement,
+    views.push_back({"base_rotation", "response", title("Rotation of the base"), about(built), "Rotation", "rad", Column::displacement,
                      built.base_turn(), 1});
   }
   return views;
@@ -219,7 +219,7 @@ std::vector<View> interface_views(const BuiltCase& built) {
   for (std::size_t k = 0; k < bases_shown(built); ++k)
     for (View& view : views_of_one_interface(built)) {
       view.id = id_of(view.id, k);
-      if (!built.facts.empty()) view.title += of_base(built, k);
+      view.title = title_of(view.title, built, k);
       view.of = static_cast<int>(k);
       views.push_back(std::move(view));
     }
@@ -254,17 +254,16 @@ void write_loops(JsonWriter& json, const ReportInput& input, const std::vector<R
   if (built.model.interfaces.empty()) return;
   if (const double height = height_of_top(built); height > 0) write_chart(json, force_displacement_chart(runs, height));
   for (std::size_t k = 0; k < bases_shown(built); ++k) {
-    const std::string of = built.facts.empty() ? "" : of_base(built, k);
     Chart tilts{id_of("moment_tilt", k),
                 "interface",
-                "Moment against tilt" + of,
+                title_of("Moment against tilt", built, k),
                 "Base moment against the tilt of the base, which contains the deformation of the ground under it.",
                 {"Tilt", "rad"},
                 {"Moment", "N m"},
                 {}};
     Chart rotations{id_of("moment_rotation", k),
                     "interface",
-                    "Moment against rotation" + of,
+                    title_of("Moment against rotation", built, k),
                     "Base moment against the rotation of the interface.",
                     {"Rotation", "rad"},
                     {"Moment", "N m"},
@@ -294,8 +293,9 @@ std::vector<double> values_of(const ReportRun& run, const LoopAxis& axis) {
 
 }  // namespace
 
-std::string of_base(const BuiltCase& built, std::size_t number) {
-  return built.bases() > 1 ? " of " + built.facts[number].name : "";
+std::string title_of(std::string_view title, const BuiltCase& built, std::size_t number) {
+  if (built.bases() < 2) return std::string(title);
+  return fmt::format("{}{}{}", title, title.ends_with("the base") ? " " : " of ", built.facts[number].name);
 }
 
 std::size_t bases_shown(const BuiltCase& built) {

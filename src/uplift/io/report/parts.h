@@ -54,8 +54,9 @@ struct Chart {
 };
 /// Nothing without curves. `origin`: where a figure comes from whose case does not state it.
 void write_chart(JsonWriter& json, const Chart& chart, std::string_view origin = {});
-/// Of several bases, the first four have figures of their own: " of i1" for the title, and the identity of a figure of base `base`.
-std::string of_base(const BuiltCase& built, std::size_t number);
+/// Of several bases, the first four have figures of their own: their titles end with the name of the base, "Base moment of i1",
+/// "Gap along the base i1". `id_of`: the identity of a figure of a base.
+std::string title_of(std::string_view title, const BuiltCase& built, std::size_t number);
 std::size_t bases_shown(const BuiltCase& built);
 std::string id_of(std::string_view id, std::size_t base);
 

@@ -93,11 +93,10 @@ void add_rest_charts(const ReportRun& run, std::size_t number, Index first, std:
   std::ranges::sort(order);
   const auto gaps = [&](const Frame& frame) { return Vector(frame.opening.segment(first, points)); };
   const auto pressures = [&](const Frame& frame) { return Vector(frame.pressure.segment(first, points)); };
-  const std::string of = of_base(*run.built, number);
   Chart gap = profile("rest_gap", "Gap along the base",
                       "At the end of the run, compared with the widest gap of each point in the frames of the animation.", "Gap", "m");
   Chart pressure = profile("rest_pressure", "Pressure along the base", "At the beginning and at the end of the run.", "Pressure", "Pa");
-  for (Chart* each : {&gap, &pressure}) each->id = id_of(each->id, number), each->title += of;
+  for (Chart* each : {&gap, &pressure}) each->id = id_of(each->id, number), each->title = title_of(each->title, *run.built, number);
   if (statics_alone(run.built->plan)) {
     gap.caption = pressure.caption = "Under the constant loads.";
     gap.curves = {along("gap", order, gaps(frames.back()).cwiseMax(0), false)};
@@ -134,9 +133,8 @@ std::vector<Chart> safety_charts(const std::vector<ReportRun>& runs) {
   if (runs.empty()) return charts;
   const BuiltCase& built = *runs.front().built;
   for (std::size_t k = 0; k < bases_shown(built); ++k) {
-    const std::string of = built.facts.empty() ? "" : of_base(built, k);
     const auto add = [&](const char* id, const char* title, const char* caption, BaseHistory which) {
-      charts.push_back(safety_chart(id, title + of, caption, which, k, runs));
+      charts.push_back(safety_chart(id, title_of(title, built, k), caption, which, k, runs));
     };
     add("eccentricity", "Eccentricity of the resultant",
         "Position of the resultant, divided by the width of the base; at 0.5 the base stands on its edge.", BaseHistory::eccentricity_1);
