@@ -119,13 +119,28 @@ function lost_text(catalog: Catalog, { numbers, full_loss = [] }: InterfaceSumma
   return `full loss of contact ${times}, ${format_value(quantity_of(catalog, "full_loss_time", "s"), lost.value)} in total`;
 }
 
-function base_of(catalog: Catalog, summary: Summary, extras: VerdictExtras, k: number, statics: boolean): BaseVerdict {
+/** Rows of the structure as a whole, before those of a single base and after them. */
+function whole_of(catalog: Catalog, { verdict: { per_metre: strip, numbers, beams = [] } }: Summary): [VerdictRow[], VerdictRow[]] {
+  return [rows_of(catalog, OF_RUN, numbers, strip), beam_rows(catalog, beams)];
+}
+
+/** Of several bases the rows of the whole stand by themselves, else among those of the first interface. */
+function blocks_of(catalog: Catalog, summary: Summary, extras: VerdictExtras, statics: boolean): BaseVerdict[] {
+  const { interfaces } = summary.verdict;
+  const several = interfaces.filter(({ role }) => role !== "wall").length > 1;
+  const blocks = interfaces.map((_, k) => base_of(catalog, summary, extras, k, statics, k === 0 && !several));
+  if (!several || statics) return blocks;
+  const whole: BaseVerdict = { name: "Whole structure", time: [], share: [], above: [], lost: [], lostText: "", beside: whole_of(catalog, summary).flat(), rest: [] };
+  return [whole, ...blocks];
+}
+
+function base_of(catalog: Catalog, summary: Summary, extras: VerdictExtras, k: number, statics: boolean, with_whole: boolean): BaseVerdict {
   const given = summary.verdict.interfaces[k] as InterfaceSummary;
   const { name, role, numbers } = given;
   const base: BaseVerdict = { name, role, time: [], share: [], above: [], lost: [], lostText: "", beside: [], rest: [] };
   if (statics) return base; // the facts contain everything
   if (role === "wall") return { ...base, beside: rows_of(catalog, OF_WALL, numbers) };
-  const { per_metre: strip, numbers: whole, beams = [] } = summary.verdict;
+  const [before, after] = with_whole ? whole_of(catalog, summary) : [[], []];
   const linear = linear_of(catalog, numbers);
   return {
     ...base,
@@ -135,11 +150,7 @@ function base_of(catalog: Catalog, summary: Summary, extras: VerdictExtras, k: n
     })),
     lost: (given.full_loss ?? []).map(({ from, to }): [number, number] => [from, to]),
     lostText: lost_text(catalog, given),
-    beside: [
-      ...(k === 0 ? rows_of(catalog, OF_RUN, whole, strip) : []),
-      ...rows_of(catalog, OF_BASE, numbers, strip),
-      ...(k === 0 ? beam_rows(catalog, beams) : []),
-    ],
+    beside: [...before, ...rows_of(catalog, OF_BASE, numbers, summary.verdict.per_metre), ...after],
     rest: rows_of(catalog, RESIDUAL, numbers),
     ...(linear ? { linear } : {}),
   };
@@ -167,7 +178,7 @@ function criteria_of(catalog: Catalog, summary: Summary): Criterion[] {
 
 /** `statics`: static stages alone, whose facts contain everything. */
 export function verdict_of(summary: Summary, extras: VerdictExtras, catalog: Catalog, statics: boolean): Verdict {
-  const { level, headline, consequence, step_check, interfaces, floors } = summary.verdict;
+  const { level, headline, consequence, step_check, floors } = summary.verdict;
   return {
     level,
     headline,
@@ -175,7 +186,7 @@ export function verdict_of(summary: Summary, extras: VerdictExtras, catalog: Cat
     facts: extras.facts,
     paragraphs: extras.paragraphs,
     run: summary.runs[0]?.label ?? "",
-    interfaces: interfaces.map((_, k) => base_of(catalog, summary, extras, k, statics)),
+    interfaces: blocks_of(catalog, summary, extras, statics),
     criteria: criteria_of(catalog, summary),
     floors,
     ...(statics ? {} : { stepCheck: step_check }),

@@ -173,4 +173,13 @@ export async function check_documents(browser, check) {
   check.equal(stands.verdict.stepCheck, undefined, "static stages have no time step");
   check.equal(stands.sections[0].title, "State under the static loads", "static stages have sections of their own");
   await still.context.close();
+  // with a second base, what belongs to the whole structure stands by itself
+  const [soil, wall] = SUMMARY.verdict.interfaces;
+  const several = { ...DOCUMENT, summary: { ...SUMMARY, verdict: { ...SUMMARY.verdict, interfaces: [soil, { ...soil, name: "second" }, wall] } } };
+  const two = await open(browser, pathToFileURL(await write_page(await inject(several))).href);
+  const blocks = await two.page.evaluate(() => window.upliftReport.report.verdict.interfaces.map(({ name, beside }) => `${name}: ${beside.map(({ label }) => label).join(", ")}`));
+  const own = "Base shear per metre, Base moment per metre, Least compression per metre, Utilisation of bearing capacity";
+  check.equal(blocks.join("; "), `Whole structure: Motion of the top, Largest storey shear per metre, Moment of column; soil: ${own}; second: ${own}; wall: Largest slip`, "rows of several bases");
+  check.equal((await two.page.locator(".base-name").allInnerTexts()).join("; "), "Whole structure; soil; second; wall (wall)", "their headings");
+  await two.context.close();
 }
