@@ -116,11 +116,11 @@ function floor_block(floors: FloorChange[], charts: Chart[]): HTMLElement | null
 }
 
 function base_block(base: BaseVerdict, many: boolean): HTMLElement {
-  const chart = share_chart(base);
+  const [chart, bars] = [share_chart(base), tension_bars(base)];
   return h("div", { class: "base-verdict" },
     many ? h("h3", { class: "base-name" }, base.role === "wall" ? `${base.name} (wall)` : base.name) : null,
     h("div", { class: "base-columns" },
-      h("div", {}, chart, tension_bars(base)),
+      chart || bars ? h("div", {}, chart, bars) : null, // walls and the whole structure have none
       beside_table(base)));
 }
 
