@@ -13,8 +13,8 @@ TIMES = re.compile(r'("(?:wall_seconds|step_seconds|created|command)": )("[^"]*"
 
 
 def duration():
-    """Duration of the motion in KEPT [s]: the run takes about half a second, with sanitizers too."""
-    return 20 if sanitized() else 100
+    """Duration of the motion in KEPT [s]: a run takes about half a second, with sanitizers too, so that a signal meets it before its end."""
+    return 30 if sanitized() else 400
 
 
 def kept():
