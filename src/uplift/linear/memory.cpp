@@ -106,6 +106,9 @@ void prepare_heap() {
 
 void give_back_free_memory() {
 #if defined(__GLIBC__)
+  // Where another allocator stands in for malloc (a sanitizer, a preloaded library), the first call initialises the heap of glibc. Two
+  // threads that did so at once would crash.
+  [[maybe_unused]] static const int initialised = malloc_trim(0);
   malloc_trim(0);
 #endif
 }

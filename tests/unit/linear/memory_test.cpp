@@ -7,10 +7,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <barrier>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <thread>
+#include <vector>
 
 #include "two_boxes.h"
 #include "uplift/base/declare.h"
@@ -150,6 +153,28 @@ TEST(MemoryDeathTest, FactorThatDoesNotFitIsRefused) {
   unit.setIdentity();
   boxes.stiffness += 1e9 * unit;
   EXPECT_EXIT(refuse(boxes), testing::ExitedWithCode(0), "");
+}
+
+/// Threads that give memory back at the same moment; exit code 0 when all have returned.
+void give_back_at_once() {
+  constexpr int count = 8;
+  std::barrier together(count);
+  {
+    std::vector<std::jthread> threads;
+    for (int each = 0; each < count; ++each) {
+      threads.emplace_back([&together] {
+        together.arrive_and_wait();
+        give_back_free_memory();
+      });
+    }
+  }
+  std::exit(0);
+}
+
+// Under the address sanitizer no one has initialised the heap of glibc before. The process is a new one for each of the five.
+TEST(MemoryDeathTest, ThreadsGiveBackMemoryAtOnce) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  for (int each = 0; each < 5; ++each) EXPECT_EXIT(give_back_at_once(), testing::ExitedWithCode(0), "");
 }
 
 #if defined(MADV_POPULATE_WRITE)
