@@ -179,7 +179,7 @@ ut_status see_galilean(const ut_unit*, double, const ut_unit* underlying, double
   return ut_accept_visitor(underlying, &visitor, facts);
 }
 
-/// The data base with the two words that it lacks: g_n (standard gravity) and deg.
+/// The data base with the words that it lacks: g_n (standard gravity), deg, and short names of pressures and moduli of subgrade reaction.
 class UnitSystem {
  public:
   UnitSystem() {
@@ -188,6 +188,11 @@ class UnitSystem {
     if (!system_) return;
     map("g_n", "9.80665 m/s2");
     map("deg", "degree");
+    map("tf", "9806.65 N");
+    map("psf", "lbf/ft2");
+    map("ksf", "kip/ft2");
+    map("pci", "lbf/in3");
+    map("kcf", "kip/ft3");
     radian_ = parse("radian");
   }
   ~UnitSystem() {
@@ -303,20 +308,21 @@ std::string nearest_unit(std::string_view unit) {
   return nearest_name(unit, words);
 }
 
-/// To UDUNITS a ton is the American one of 907 kg, which hardly anybody means here.
-bool has_ton(std::string_view unit) {
+/// To UDUNITS a ton is the American one of 907 kg, which hardly anybody means here. What is wrong, and the word to use.
+std::pair<std::string_view, std::string_view> ambiguous_ton(std::string_view unit) {
   for (std::size_t i = 0; i < unit.size(); ++i) {
     const std::size_t begin = i;
     while (i < unit.size() && (is_letter(unit[i]) || unit[i] == '_')) ++i;
     const std::string_view word = unit.substr(begin, i - begin);
-    if (word == "ton" || word == "tons") return true;
+    if (word == "ton" || word == "tons") return {"a ton is 907, 1000 or 1016 kg; t is 1000 kg", "t"};
+    if (word == "tonf" || word == "ton_force") return {"a ton-force is 8.896, 9.807 or 9.964 kN; tf is 9.80665 kN", "tf"};
   }
-  return false;
+  return {};
 }
 
 /// Conversion by UDUNITS; `number` [unit] was read from `text`.
 Quantity convert(std::string_view text, double number, std::string_view unit, std::string_view wanted_unit) {
-  if (has_ton(unit)) return refused(text, "a ton is 907, 1000 or 1016 kg; t is 1000 kg", "t");
+  if (const auto [why, word] = ambiguous_ton(unit); !why.empty()) return refused(text, why, std::string(word));
   const UnitSystem& system = unit_system();
   if (!system.ready()) return refused(text, "the data base of UDUNITS-2 is missing: install libudunits2-data");
   const std::lock_guard lock(system.guard());
@@ -329,7 +335,9 @@ Quantity convert(std::string_view text, double number, std::string_view unit, st
     return {value, true, {}, {}};
   }
   if (unit == "g" && dimension_name(wanted_unit) == "an acceleration") return refused(text, "g is the gram; standard gravity is g_n");
-  return refused(text, dimension_of(system, found));
+  std::string what = dimension_of(system, found);
+  if (convertible(system.parse("(" + std::string(unit) + ") m/s2"), wanted)) what += "; the forces of kg, t and lb are kgf, tf and lbf";
+  return refused(text, what);
 }
 
 }  // namespace

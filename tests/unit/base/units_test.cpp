@@ -53,6 +53,18 @@ TEST(Units, ConvertsTextsToSi) {
   EXPECT_NEAR(si("1 h", "s"), 3600, 0);
 }
 
+// A pound-force is 0.45359237 kg * 9.80665 m/s2, a foot 0.3048 m, both exact by definition.
+TEST(Units, ShortNamesOfPressuresAndModuliOfSubgradeReaction) {
+  constexpr double pound_force = 0.45359237 * 9.80665, foot = 0.3048, inch = foot / 12;
+  EXPECT_NEAR(si("1 tf", "N"), 9806.65, 1e-9);
+  EXPECT_NEAR(si("2 tf/m3", "Pa/m") / (2 * 9806.65), 1, 1e-15);
+  EXPECT_NEAR(si("1 psf", "Pa") / (pound_force / (foot * foot)), 1, 1e-15);
+  EXPECT_NEAR(si("1 ksf", "Pa") / (1000 * pound_force / (foot * foot)), 1, 1e-15);
+  EXPECT_NEAR(si("1 ksf/ft", "Pa/m") / si("1 kcf", "Pa/m"), 1, 1e-15);
+  EXPECT_NEAR(si("50 pci", "Pa/m") / (50 * pound_force / (inch * inch * inch)), 1, 1e-15);
+  EXPECT_NEAR(si("1 pci", "Pa/m") / si("1.728 kcf", "Pa/m"), 1, 1e-15);
+}
+
 TEST(Units, AcceptsTheUsualSpellings) {
   for (const char* text : {"2 kg/m3", "2 kg/m^3", "2 kg/m\u00b3", "2 kg.m-3", "2 kg m-3", "2 kg/(m3)"})
     EXPECT_EQ(si(text, "kg/m3"), 2) << text;
@@ -139,6 +151,9 @@ TEST(Units, GravityIsNotTheGram) {
   EXPECT_NEAR(si("2 kN/g_n", "kg"), 2000 / 9.80665, 1e-12);
   EXPECT_EQ(why_not("40 tons", "kg"), "\"40 tons\" (a ton is 907, 1000 or 1016 kg; t is 1000 kg)");
   EXPECT_EQ(why_not("2 ton/m3", "kg/m3"), "\"2 ton/m3\" (a ton is 907, 1000 or 1016 kg; t is 1000 kg)");
+  EXPECT_EQ(why_not("2 tonf/m3", "Pa/m"), "\"2 tonf/m3\" (a ton-force is 8.896, 9.807 or 9.964 kN; tf is 9.80665 kN)");
+  EXPECT_EQ(why_not("5 kg/cm3", "Pa/m"), "\"5 kg/cm3\" (a density; the forces of kg, t and lb are kgf, tf and lbf)");
+  EXPECT_EQ(why_not("5 t", "N"), "\"5 t\" (a mass; the forces of kg, t and lb are kgf, tf and lbf)");
   EXPECT_EQ(why_not("0.3 g", "m/s2"), "\"0.3 g\" (g is the gram; standard gravity is g_n)");
   EXPECT_EQ(why_not("0.3 g0", "m/s2"), "\"0.3 g0\" (g0 is the gram to the power 0; standard gravity is g_n)");
   EXPECT_EQ(why_not("0.3 g0", "1"), "\"0.3 g0\" (g0 is the gram to the power 0; standard gravity is g_n)");
