@@ -225,15 +225,17 @@ std::shared_ptr<const Model> resting_model(const Case& read, const RunSpec& spec
   return rest;
 }
 
-/// A bonded joint in the place of a constraint is much stiffer than the structure: an initial displacement that moves one side of it
-/// against the other would fling the structure away. The bonded run begins without it. `constraints`: of the case, for each interface.
-void leave_out_displacement(const std::vector<char>& constraints, BuiltCase& built) {
-  Vector& displacement = built.plan.initial_displacement;
-  if (displacement.size() == 0) return;
-  const double least = 1e-9 * displacement.cwiseAbs().maxCoeff();
-  for (std::size_t k = 0; k < constraints.size(); ++k)
-    if (constraints[k] && displacement.size() > 0 && Vector(built.model.interfaces[k].b * displacement).cwiseAbs().maxCoeff() > least)
-      displacement.resize(0);
+/// A bonded joint in the place of a constraint is much stiffer than the structure: an initial displacement or velocity that moves one side
+/// of it against the other would fling the structure away. The bonded run begins without it. `constraints`: of the case, for each
+/// interface.
+void leave_out_initial_motion(const std::vector<char>& constraints, BuiltCase& built) {
+  for (Vector* motion : {&built.plan.initial_displacement, &built.plan.initial_velocity}) {
+    if (motion->size() == 0) continue;
+    const double least = 1e-9 * motion->cwiseAbs().maxCoeff();
+    for (std::size_t k = 0; k < constraints.size(); ++k)
+      if (constraints[k] && motion->size() > 0 && Vector(built.model.interfaces[k].b * *motion).cwiseAbs().maxCoeff() > least)
+        motion->resize(0);
+  }
 }
 
 /// N/m; of rigid bodies alone any number does.
@@ -393,7 +395,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
       stage != nullptr && plan.impact->acts() && (!stage->path_average || plan.method->constrains()))
     check_impulses(built.model);
   add_initial(*read.input, names, built);
-  if (spec.bonded) leave_out_displacement(constraints, built);
+  if (spec.bonded) leave_out_initial_motion(constraints, built);
   find_shown(read, names, built);
   plan.created_limit = read.input->energy.created_limit;
   plan.stop_at_limit = read.input->energy.stop_at_limit;

@@ -83,6 +83,8 @@ inline constexpr double noise_share = 1e-3;
 inline constexpr double round_off_share = 1e-9;
 /// The relative change of a number: nothing where both are below `least`. A reference below it counts as `least`.
 std::optional<double> change_of(double value, double reference, double least);
+/// The same, and nothing either where the reference alone is below `least`: there is nothing that changes.
+std::optional<double> change_from(double reference, double value, double least);
 
 /// A number as it is printed wherever it appears: rounded once, here. A residual has no more decimals than its remaining variation.
 std::string text_of(const VerdictNumber&);

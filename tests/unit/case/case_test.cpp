@@ -182,18 +182,21 @@ TEST(Case, BondedRunHasNoGaps) {
   EXPECT_NEAR(peak("gap = 0.05\n"), without, 1e-12 * without);
 }
 
-/// A block that is turned on constraints: the bonded joint, a thousand times as stiff as the structure, would fling it away.
+/// A block that is turned, or turns, on constraints: the bonded joint, a thousand times as stiff as the structure, would fling it away.
 TEST(Case, BondedRunOfAConstraintLeavesOutWhatOpensIt) {
   const std::string text =
       "title = \"block\"\n[nodes]\nc = [0, 2]\n[[rigid]]\nnode = \"c\"\nmass = 1e4\ninertia = 1.4e4\n[gravity]\nacceleration = [0, "
       "-9.81]\n[[interface]]\n"
       "name = \"j\"\nfooting = { body = \"c\", width = 1, points = 2, offset = [0, -2] }\nlaw = { type = \"coulomb\", friction = 5 }\n"
-      "[[initial]]\nnode = \"c\"\ndisplacement = [-0.2, 0.05]\nrotation = 0.1\n[[stage]]\ntype = \"dynamic\"\nduration = 0.01\nstep = "
+      "[[initial]]\nnode = \"c\"\ndisplacement = [-0.2, 0.05]\nrotation = 0.1\nangular_velocity = 0.5\n[[stage]]\ntype = "
+      "\"dynamic\"\nduration = 0.01\nstep = "
       "1e-4\n";
   const Case file = check_case(read_toml_text(text, "case.toml"), "case.toml");
   const std::vector<RunSpec> runs = runs_of_case(file);
   EXPECT_GT(build(file, runs[0]).plan.initial_displacement.norm(), 0.1);
+  EXPECT_DOUBLE_EQ(build(file, runs[0]).plan.initial_velocity.norm(), 0.5);
   EXPECT_EQ(build(file, runs[1]).plan.initial_displacement.size(), 0);
+  EXPECT_EQ(build(file, runs[1]).plan.initial_velocity.size(), 0);
 }
 
 TEST(Case, TractionAtTheEndOfTheStepLosesNoVelocityInASoftJoint) {
