@@ -122,6 +122,37 @@ const RawList& list_of(const Raw& raw, const Field& field) {
   return *list;
 }
 
+/// A key that its table does not have.
+struct UnknownKey {
+  std::string key;
+  const Raw& entry;
+  const std::vector<Field>& known;
+  std::string table;
+};
+
+/// Tables at and below a section that have a key of this name.
+void find_tables_with(std::string_view key, const Section& section, std::vector<std::string>& found) {
+  for (const Field& field : section.fields) {
+    if (field.name == key && std::ranges::find(found, section.name) == found.end()) found.emplace_back(section.name);
+    if (field.section != nullptr) find_tables_with(key, *field.section, found);
+  }
+}
+
+/// `file`: of the whole file, whose other tables may have the key; null: not known.
+[[noreturn]] void refuse(const UnknownKey& unknown, const Section* file) {
+  std::vector<std::string> known;
+  for (const Field& field : unknown.known) known.emplace_back(field.name);
+  const std::string nearest = nearest_name(unknown.key, known);
+  std::string wanted = "a key of " + unknown.table, found = in_quotes(unknown.key);
+  if (known.empty()) wanted = "no key, as " + unknown.table + " has no parameters";
+  if (nearest.empty() && !known.empty()) wanted += ": " + listed(known);
+  std::vector<std::string> tables;
+  if (nearest.empty() && file != nullptr) find_tables_with(unknown.key, *file, tables);
+  constexpr std::size_t most_tables = 3;  // of more, none is likely to be meant
+  if (!tables.empty() && tables.size() <= most_tables) found += ", a key of " + listed(tables);
+  throw InputError(unknown.entry.where, unknown.entry.path, wanted, found, nearest);
+}
+
 bool bare_value(const Section& section) {
   return section.fields.size() == 1 && section.fields.front().name == only_value;
 }
@@ -182,25 +213,13 @@ class Checker {
   static void fill(Values& values, const Raw& raw, const RawTable& table, const std::vector<Field>& fields, std::string_view what) {
     const auto type_of_part = [&values](const std::string& key) { return values.part_ && key == "type"; };
     for (const auto& [key, entry] : table.entries)
-      if (!type_of_part(key)) refuse_unknown(key, entry, fields, what);
+      if (!type_of_part(key) && std::ranges::find(fields, key, &Field::name) == fields.end())
+        throw UnknownKey{key, entry, fields, std::string(what)};
     for (const auto& [key, entry] : table.entries)
       for (const Field& field : fields)
         if (field.name == key && !type_of_part(key)) values.items_.emplace(key, given(entry, field));
     for (const Field& field : fields)
       if (!table.find(field.name)) values.items_.emplace(field.name, absent(raw, field));
-  }
-
-  static void refuse_unknown(const std::string& key, const Raw& entry, const std::vector<Field>& fields, std::string_view what) {
-    std::vector<std::string> known;
-    for (const Field& field : fields) {
-      if (field.name == key) return;
-      known.emplace_back(field.name);
-    }
-    const std::string nearest = nearest_name(key, known);
-    std::string wanted = "a key of " + std::string(what);
-    if (known.empty()) wanted = "no key, as " + std::string(what) + " has no parameters";
-    if (nearest.empty() && !known.empty()) wanted += ": " + listed(known);
-    throw InputError(entry.where, entry.path, wanted, in_quotes(key), nearest);
   }
 
   static Values::Item given(const Raw& raw, const Field& field) {
@@ -332,10 +351,18 @@ class Checker {
 };
 
 Values check(const Raw& raw, const Section& section) {
-  return Checker::section(raw, section);
+  try {
+    return Checker::section(raw, section);
+  } catch (const UnknownKey& unknown) {
+    refuse(unknown, &section);
+  }
 }
 Values check_part(const Raw& raw, std::span<const PartInfo* const> catalog, std::string_view type) {
-  return Checker::part(raw, catalog, type);
+  try {
+    return Checker::part(raw, catalog, type);
+  } catch (const UnknownKey& unknown) {
+    refuse(unknown, nullptr);
+  }
 }
 
 }  // namespace uplift

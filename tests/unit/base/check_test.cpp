@@ -133,6 +133,11 @@ TEST(Check, UnknownKeys) {
             "case.toml:1: method.stifness: expected a key of penalty, found \"stifness\" (did you mean \"stiffness\"?)");
   EXPECT_EQ(error_of("method = {type = \"lagrange\", rounds = 1}\n"),
             "case.toml:1: method.rounds: expected no key, as lagrange has no parameters, found \"rounds\"");
+  // keys that stand in another table
+  EXPECT_EQ(error_of("title = \"t\"\n[limits]\nmethod = \"lagrange\"\n"),
+            "case.toml:3: limits.method: expected a key of limits: rotation or tolerance, found \"method\", a key of sample");
+  EXPECT_EQ(error_of("method = {type = \"lagrange\", tolerance = 1}\n"),
+            "case.toml:1: method.tolerance: expected no key, as lagrange has no parameters, found \"tolerance\", a key of limits");
 }
 
 TEST(Check, MissingKeys) {
