@@ -132,10 +132,10 @@ struct UnknownKey {
 
 /// Tables at and below a section that have a key of this name.
 void find_tables_with(std::string_view key, const Section& section, std::vector<std::string>& found) {
-  for (const Field& field : section.fields) {
-    if (field.name == key && std::ranges::find(found, section.name) == found.end()) found.emplace_back(section.name);
+  if (std::ranges::find(section.fields, key, &Field::name) != section.fields.end() && std::ranges::find(found, section.name) == found.end())
+    found.emplace_back(section.name);
+  for (const Field& field : section.fields)
     if (field.section != nullptr) find_tables_with(key, *field.section, found);
-  }
 }
 
 /// `file`: of the whole file, whose other tables may have the key; null: not known.
@@ -148,8 +148,9 @@ void find_tables_with(std::string_view key, const Section& section, std::vector<
   if (nearest.empty() && !known.empty()) wanted += ": " + listed(known);
   std::vector<std::string> tables;
   if (nearest.empty() && file != nullptr) find_tables_with(unknown.key, *file, tables);
-  constexpr std::size_t most_tables = 3;  // of more, none is likely to be meant
-  if (!tables.empty() && tables.size() <= most_tables) found += ", a key of " + listed(tables);
+  constexpr std::size_t most_tables = 3;  // of more, none is likely to be meant but the file itself, which comes first
+  if (tables.size() > most_tables) tables.resize(tables.front() == file->name ? 1 : 0);
+  if (!tables.empty()) found += ", a key of " + listed(tables);
   throw InputError(unknown.entry.where, unknown.entry.path, wanted, found, nearest);
 }
 
