@@ -104,6 +104,37 @@ static void runs(void) {
   uplift_error_clear(&error);
 }
 
+static int calls_left;
+static int refusing_once(void* user, int points, int components, double step, const double* from, const double* to, const double* old,
+                         double* traction, double* slope, double* memory, double* stored, double* dissipated) {
+  static double stiffness = 1e6;
+  (void)user;
+  if (--calls_left == 0) return 1;
+  return linear(&stiffness, points, components, step, from, to, old, traction, slope, memory, stored, dissipated);
+}
+
+/* A shorter step would succeed, because the function refuses one call only: the run ends all the same, and the next one is a new run. */
+static void a_law_ends_its_run(void) {
+  uplift_error error = {0, 0, 0, NULL, NULL, NULL};
+  uplift_case* each = parsed("{ type = \"external\", name = \"mine\", K_n = 1e6, K_t = 1e6 }", &error);
+  uplift_results* results = NULL;
+  uplift_options options;
+  const char* json = NULL;
+  EXPECT(uplift_case_set_law(each, "mine", refusing_once, NULL, &error) == UPLIFT_OK);
+  uplift_options_init(&options);
+  options.step_check = 0; /* one run */
+  calls_left = 500;
+  EXPECT(uplift_run(each, &options, &results, &error) == UPLIFT_OK && results != NULL);
+  EXPECT(calls_left == 0);
+  EXPECT(uplift_results_json(results, &json, &error) == UPLIFT_OK && strstr(json, "\"status\": \"failed\"") != NULL);
+  uplift_results_free(results);
+  results = NULL;
+  EXPECT(uplift_run(each, &options, &results, &error) == UPLIFT_OK && results != NULL);
+  EXPECT(uplift_results_json(results, &json, &error) == UPLIFT_OK && strstr(json, "\"status\": \"completed\"") != NULL);
+  uplift_results_free(results);
+  uplift_case_free(each);
+}
+
 static int count_steps(void* user, const uplift_step* step) {
   int* counted = (int*)user;
   EXPECT(step->unknowns == 1 && step->displacement != NULL);
@@ -224,6 +255,7 @@ static void random_orders(void) {
 int main(int count, char** words) {
   if (count != 2) return 2;
   runs();
+  a_law_ends_its_run();
   cancelling();
   refusals(words[1]);
   random_orders();

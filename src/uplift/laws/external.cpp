@@ -1,6 +1,7 @@
 #include "uplift/laws/external.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -52,9 +53,11 @@ class ExternalLaw final : public InterfaceLaw {
       const auto n = static_cast<std::size_t>(batch.points), c = static_cast<std::size_t>(batch.components);
       traction.resize(c * n), slope.resize(c * c * n), stored.resize(n), dissipated.resize(n);
       memory.assign(old, old + static_cast<std::size_t>(law.info_.memory) * n);
-      const bool done = law.function_({batch.points, batch.components, batch.step, from, to, old, traction.data(), slope.data(),
-                                       memory.data(), stored.data(), dissipated.data()});
-      if (!done) std::ranges::fill(traction, std::numeric_limits<double>::quiet_NaN());  // a step that does not converge
+      if (!law.ended_ && !law.function_({batch.points, batch.components, batch.step, from, to, old, traction.data(), slope.data(),
+                                         memory.data(), stored.data(), dissipated.data()}))
+        law.ended_ = true;
+      if (law.ended_)
+        std::ranges::fill(traction, std::numeric_limits<double>::quiet_NaN());  // neither this step nor a shorter one converges
     }
     double energy(std::size_t i) const { return stored[i] + dissipated[i]; }
     void give(double* to_traction, double* to_slope) const {
@@ -99,6 +102,7 @@ class ExternalLaw final : public InterfaceLaw {
 
   ExternalLawInfo info_;
   ExternalFunction function_;
+  mutable std::atomic<bool> ended_ = false;  // by the function: it is not called again in this run
 };
 
 /// Stands for the law until the caller's function is connected: elastic, as stiff as the closed joint.

@@ -7,7 +7,7 @@
 namespace uplift {
 
 /// One step of all points of an interface, as the caller of the library writes it; see `uplift_law_function` in include/uplift.h for the
-/// layout and for what the energies must satisfy. False: the step fails.
+/// layout and for what the energies must satisfy. False: the run fails.
 struct ExternalStep {
   int points, components;
   double step;
