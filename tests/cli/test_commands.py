@@ -36,6 +36,14 @@ class New(CliTest):
         plan.write_text(plan.read_text().replace("count = 20", "count = 1").replace("duration = 20", "duration = 5"))
         self.uplift("study", "check", "shaken.study")
 
+    def test_a_new_study_of_a_case_file(self):
+        self.uplift("new", "tower")
+        (self.folder / "shaken.toml").write_bytes((self.folder / "tower" / "case.toml").read_bytes())
+        for given, study, of in (("shaken.toml", "shaken.study", "../shaken.toml"), ("tower/", "tower.study", "../tower/case.toml")):
+            self.uplift("study", "new", given)
+            self.assertIn(f'case = "{of}"', (self.folder / study / "plan.toml").read_text())
+            self.assertTrue((self.folder / study / of).is_file())
+
     def test_names_that_lead_nowhere(self):
         self.assertIn("expected the name of a folder, found an empty one", self.uplift("new", "", expect=2).stderr)
         self.assertEqual(list(self.folder.iterdir()), [])

@@ -89,22 +89,25 @@ std::vector<std::string> driving(const std::filesystem::path& case_file) {
 
 int new_study(const std::string& name) {
   namespace fs = std::filesystem;
-  const fs::path given(name);
+  const fs::path whole(name), given = whole.has_filename() ? whole : whole.parent_path();  // a shell completes tower/
   if (given.filename().empty() || given.stem() == "." || given.stem() == "..")
     throw InputError({name, 0}, "", "the name of a new study", in_quotes(name));
-  const fs::path folder = given.extension() == ".study" ? given : fs::path(name + ".study"), file = folder / "plan.toml";
+  const bool of_file = given.extension() == ".toml";  // tower.toml: the study of this case, as tower: that of tower/case.toml
+  const fs::path folder =
+      given.extension() == ".study" ? given : fs::path((of_file ? fs::path(given).replace_extension() : given).string() + ".study");
+  const fs::path file = folder / "plan.toml", case_file = of_file ? given.filename() : folder.stem() / "case.toml";
   std::error_code error;
   if (fs::exists(file, error)) throw InputError({file.string(), 0}, "", "the name of a new study", "a study that exists already");
   fs::create_directories(folder, error);
   if (error) throw InputError({folder.string(), 0}, "", "a folder that can be created", error.message());
   std::string replaced, components;
-  for (const std::string& each : driving(folder.parent_path() / folder.stem() / "case.toml")) {
+  for (const std::string& each : driving(folder.parent_path() / case_file)) {
     replaced += (replaced.empty() ? "" : ", ") + escaped(each);
     components += (components.empty() ? "" : ", ") + std::string(generated);
   }
   try {
-    write_file_atomically(file, fmt::format(study_template, in_shell(folder.string()),
-                                            escaped("../" + folder.stem().string() + "/case.toml"), replaced, components));
+    write_file_atomically(
+        file, fmt::format(study_template, in_shell(folder.string()), escaped((".." / case_file).string()), replaced, components));
   } catch (const fs::filesystem_error& failed) {
     throw OutputError(failed.what());
   }
