@@ -117,7 +117,7 @@ typedef struct uplift_step {
 typedef struct uplift_options {
   size_t size;                                                  /* of this structure */
   int step_check;                                               /* 0: without the companion run with twice the step */
-  const char* fields_folder;                                    /* results folder for fields; null: no fields are written */
+  const char* fields_folder;                                    /* results folder, for fields and all results; null: none is written */
   int (*progress)(void* user, const uplift_progress* progress); /* may be null; called by one thread at a time */
   int (*step)(void* user, const uplift_step* step);             /* may be null */
   void* user;                                                   /* first argument of both functions */

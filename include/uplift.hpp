@@ -114,7 +114,7 @@ struct Step {
 /// How an analysis is followed. Functions return whether it shall go on.
 struct Options {
   bool step_check = true;     // with the companion run with twice the step
-  std::string fields_folder;  // results folder for fields; empty: none are written
+  std::string fields_folder;  // results folder with the fields and everything else that the program writes; empty: no fields
   std::function<bool(const uplift_progress&)> progress;
   std::function<bool(const Step&)> step;
 };

@@ -234,7 +234,8 @@ class Case(InterfaceTables, StructureTables, MotionTables, ResultTables):
             progress: show a progress bar; by default on a terminal.
             step_check: estimate the error of the time step by a run with twice the step.
             step: called after every step of the case's own run with a :class:`StepView`; returning False ends the run.
-            fields: folder for the fields that the case asks for.
+            fields: results folder for the fields that the case asks for; everything that :meth:`Run.write` writes stands beside them. Earlier
+                results are moved aside.
 
         Ctrl-C ends the run in order: its results are complete up to that instant and `run.status` is "interrupted".
         Raises InputError.
@@ -295,6 +296,9 @@ class Case(InterfaceTables, StructureTables, MotionTables, ResultTables):
         floor_spectra: Optional[bool] = None,
         design: Optional[Mapping[str, Any]] = None,
         hazard: Optional[Mapping[str, Any]] = None,
+        factors: Sequence[Mapping[str, Any]] = (),
+        bootstrap: Optional[int] = None,
+        reduced_model: Optional[Union[str, "os.PathLike[str]"]] = None,
         run: Optional[Mapping[str, Any]] = None,
     ) -> Study:
         """A study of the case: writes FOLDER/plan.toml, which the program computes (:meth:`Study.run`). Keys as in the plan (guide, "Studies").
@@ -315,6 +319,9 @@ class Case(InterfaceTables, StructureTables, MotionTables, ResultTables):
             floor_spectra: keep the floor spectra of every run.
             design: design motion of the site, a table with `intensity` and `source`.
             hazard: hazard curve of the site, a table with `intensities`, `rates` (a year) and `source`.
+            factors: factors of safety that the runs do not vary, tables with `name`, `median`, `beta_r`, `beta_u` and `source`.
+            bootstrap: draws of a parametric bootstrap of every fit, at least 200.
+            reduced_model: file of a reduced model of the case (:meth:`reduce`), with which the runs are computed.
             run: limits of a run, a table with `workers`, `timeout`, `memory` and `attempts`.
 
         The plan names the file of a loaded case that was not changed; any other case is written into the folder. A plan that this package
@@ -324,6 +331,7 @@ class Case(InterfaceTables, StructureTables, MotionTables, ResultTables):
             raise ValueError("a law in Python cannot be used by a study, which the program computes")
         tables: Dict[str, Any] = {"seed": seed, "samples": samples, "pairing": pairing, "floor_spectra": floor_spectra, "limit": list(limits)}
         tables.update({"variable": list(variables), "correlation": list(correlations), "design": design, "hazard": hazard, "run": run})
+        tables.update({"factor": list(factors), "bootstrap": bootstrap, "reduced_model": reduced_model and os.path.abspath(os.fspath(reduced_model))})
         own = os.path.join(os.fspath(folder), "case.toml")
         used = self._is_its_file()
         file = os.path.relpath(self._file, os.fspath(folder)) if used else "case.toml"

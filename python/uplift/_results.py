@@ -161,6 +161,8 @@ def psa(
     import numpy as np
 
     values = np.ascontiguousarray(acceleration, dtype=np.float64)
+    if values.ndim != 1:
+        raise ValueError(f"an acceleration history has one dimension, found an array of the shape {values.shape}")
     at = np.ascontiguousarray(np.geomspace(0.1, 50, 200) if frequencies is None else frequencies, dtype=np.float64)
     made = np.empty_like(at)
     pointer = ctypes.POINTER(ctypes.c_double)
@@ -272,7 +274,10 @@ class Results:
         return _library.lent_text("uplift_results_report", self._handle.pointer)
 
     def write(self, folder: Union[str, "os.PathLike[str]"]) -> None:
-        """Writes report.html, histories.csv, summary.json and case.resolved.toml. Earlier results are moved aside."""
+        """Writes report.html, histories.csv, summary.json and case.resolved.toml. Earlier results are moved aside.
+
+        Fields are written during the run: `fields` of :meth:`Case.run` names a folder for them and for all of this.
+        """
         pointer = ctypes.c_void_p()
         _library.call("uplift_results_write", self._handle.pointer, os.fspath(folder).encode(), ctypes.byref(pointer))
         _library.library().uplift_text_free(pointer)

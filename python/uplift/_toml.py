@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import numbers
 import re
 from typing import Any, List, Mapping
 
@@ -15,12 +16,12 @@ def plain(value: Any) -> Any:
         return {str(key): plain(entry) for key, entry in value.items() if entry is not None}
     if isinstance(value, bool) or type(value) in (int, float, str):
         return value
-    if hasattr(value, "tolist"):
-        return plain(value.tolist())
-    if isinstance(value, float):
-        return float.__float__(value)
+    if hasattr(value, "tolist") and type(listed := value.tolist()) is not type(value):
+        return plain(listed)
     if isinstance(value, (int, str)):
         return int(value) if isinstance(value, int) else str(value)
+    if isinstance(value, numbers.Real):  # also numpy.longdouble, which tolist() leaves as it is
+        return float(value)
     if hasattr(value, "__fspath__"):
         return str(value)
     if isinstance(value, (list, tuple, range)):

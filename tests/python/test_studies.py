@@ -76,6 +76,8 @@ class Studies(unittest.TestCase):
         other = case.run(step_check=False)
         self.assertGreater(np.abs(whole["top.ux"]).max(), 1e-4)
         np.testing.assert_allclose(other["top.ux"], whole["top.ux"], rtol=0, atol=1e-9 * np.abs(whole["top.ux"]).max())
+        study = block().study(self.folder / "kept.study", intensity=PGA, method=STRIPES, motions=self.files, limits=[UPLIFT], reduced_model=file)
+        self.assertIn("control runs", study.fit().document.provenance.reduced_model)
         study = case.study(self.folder / "reduced.study", intensity=PGA, method=STRIPES, motions=self.files, limits=[UPLIFT])
         study.run()
         self.assertIn("control runs", json.loads((study.folder / "study.json").read_text())["provenance"]["reduced_model"])
@@ -92,7 +94,8 @@ class Studies(unittest.TestCase):
 
     def test_the_command_line_gives_the_same_bytes(self):
         site = {"design": {"intensity": 0.5}, "hazard": {"intensities": [0.5, 2], "rates": [1e-4, 1e-4 * 4**-2.5]}}
-        study = self.study(method=IDA, variables=[STIFFNESS], samples=2, **site)
+        factors = [{"name": "strength", "median": 1.2, "beta_u": 0.15}]
+        study = self.study(method=IDA, variables=[STIFFNESS], samples=2, factors=factors, bootstrap=200, **site)
         self.assertEqual(study.check().done, 0)
         status = study.run(progress=False)
         self.assertEqual((status.complete, status.curves, status.running, status.interrupted), (6, 6, False, False))
@@ -115,6 +118,8 @@ class Studies(unittest.TestCase):
         expected = [0.5 * math.erfc(-math.log(im / limit.theta) / limit.beta / math.sqrt(2)) for im in curve["intensity"]]
         np.testing.assert_allclose(curve["probability"], expected, rtol=1e-9)
         self.assertEqual(limit.unknown_survived.theta, limit.theta)
+        self.assertAlmostEqual(limit.capacity.median, 1.2 * limit.theta, delta=1e-9 * limit.theta)
+        self.assertEqual(limit.bootstrap.draws, 200)
         at_design = 0.5 * math.erfc(-math.log(0.5 / limit.theta) / limit.beta / math.sqrt(2))
         self.assertAlmostEqual(limit.performance.at_design, at_design, delta=1e-9)
         rate = 1e-4 * (0.5 / limit.theta) ** 2.5 * math.exp((2.5 * limit.beta) ** 2 / 2)  # of the power law

@@ -96,6 +96,15 @@ class Cases(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(ValueError, "relative"):
             case.save(folder + "/case.toml")
 
+    def test_numbers_of_more_digits_than_python_has(self):
+        long = np.linspace(0, 1, 3, dtype=np.longdouble)
+        self.assertEqual(up.parse(pier(up.springs(K_n=long[1])).to_toml()).document["interface"][0]["law"]["K_n"], 0.5)
+        case = pier(soil())
+        case.function("table", up.functions.table(times=long, values=long))
+        self.assertEqual(up.parse(case.to_toml()).document["function"][-1]["shape"]["times"], [0, 0.5, 1])
+        with self.assertRaisesRegex(TypeError, "cannot contain"):
+            pier(up.springs(K_n=np.clongdouble(1j))).to_toml()
+
     def test_cases_do_not_share_their_parts(self):
         law = soil()
         first, second = pier(law), pier(law)
@@ -139,6 +148,22 @@ class Runs(unittest.TestCase):
             theirs, mine = json.loads((out / "summary.json").read_text()), run.summary
             self.assertEqual(theirs["verdict"]["interfaces"], mine["verdict"]["interfaces"])
             self.assertEqual(theirs["verdict"]["numbers"], mine["verdict"]["numbers"])
+
+    def test_fields_stand_in_a_folder_of_results(self):
+        case = up.load(ROOT / "examples/02_building_on_soil")
+        case.document["stage"][-1]["duration"] = "0.1 s"
+        case.document["output"]["fields"] = {"every": 25}
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "out"
+            for earlier in ([], ["out.1"]):  # again: what is there is moved aside
+                run = case.run(step_check=False, fields=out)
+                self.assertEqual(sorted(each.name for each in pathlib.Path(folder).iterdir()), ["out", *earlier])
+                self.assertTrue((out / "fields" / "run.pvd").is_file())
+            run.write(pathlib.Path(folder) / "mine")
+            self.assertEqual(sorted(each.name for each in out.iterdir()), sorted(["fields", *os.listdir(folder + "/mine")]))
+            self.assertEqual((out / "histories.csv").read_bytes(), (pathlib.Path(folder) / "mine" / "histories.csv").read_bytes())
+            with self.assertRaisesRegex(up.InputError, "found an empty name"):
+                run.write("")
 
     def test_histories_are_views_that_keep_the_results(self):
         moment = pier(soil()).run(step_check=False)["underside.moment"]
@@ -295,6 +320,8 @@ class Runs(unittest.TestCase):
         self.assertAlmostEqual(value[0], exact, delta=2e-5 * exact)
         with self.assertRaises(up.InputError):
             up.psa([np.nan, 1], step)
+        with self.assertRaisesRegex(ValueError, r"one dimension, found an array of the shape \(10, 2\)"):
+            up.psa(np.ones((10, 2)), step)
         # a suddenly constant acceleration: x = a (1 - cos wt)/w^2, largest between the points, where no step of the record falls
         step, fast = 0.01, np.linspace(3.1, 47.3, 23)
         _, value = up.psa(np.ones(100), step, damping=0.0, frequencies=fast)

@@ -126,8 +126,11 @@ class Caller {
     if (options_.step != nullptr) made.observe = [this](const Snapshot& snapshot) { show(snapshot); };
     return made;
   }
-  void finish() {
-    if (folder_) folder_->finish();
+  /// With the other results beside them, fields are results like those of the program: a later run moves them aside.
+  void finish(const uplift_results& made) {
+    if (!folder_) return;
+    write_results(*made.loaded, made.results, *folder_);
+    folder_->finish();
   }
 
  private:
@@ -166,7 +169,7 @@ int analyse(Analysis analysis, const uplift_case* each, const uplift_options* op
     auto results = std::make_unique<uplift_results>();
     results->loaded = each->loaded;
     results->results = analysis(*each->loaded, caller.control());
-    caller.finish();
+    caller.finish(*results);
     *made = results.release();
   });
 }

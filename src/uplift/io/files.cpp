@@ -35,6 +35,7 @@ using File = std::unique_ptr<std::FILE, Closer>;
 
 /// The folder that a path stands for: links and a final "." or ".." are resolved, because a folder is moved by its own name.
 std::string resolved(const std::string& given) {
+  if (given.empty()) refuse(given, "a folder for the results", "an empty name");
   std::error_code error;
   fs::path path = fs::path(given).lexically_normal();
   if (!path.has_filename()) path = path.parent_path();
