@@ -70,6 +70,11 @@ export class ChartCard {
     return this.plot_?.u.ctx.canvas ?? null;
   }
 
+  /** Numbers of ticks of the axes that are drawn. */
+  get ticks(): number[] {
+    return this.plot_?.u.axes.map((axis) => (axis as { _splits?: number[] | null })._splits?.length ?? 0) ?? [];
+  }
+
   get view(): View {
     return this.plot_?.view ?? this.model.default_view();
   }

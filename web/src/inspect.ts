@@ -25,6 +25,7 @@ export interface ChartProbe {
   readonly series: { label: string; run: string | undefined; length: number; visible: boolean; failed: boolean }[];
   readonly view: View;
   readonly canvas: HTMLCanvasElement | null;
+  readonly ticks: number[];
   /** Number of canvas pixels with the given curve colours or any ink at all. */
   inkedPixels(): number;
   setVisible(label: string, visible: boolean): void;
@@ -61,6 +62,9 @@ function probe(card: ChartCard): ChartProbe {
     },
     get canvas() {
       return card.canvas;
+    },
+    get ticks() {
+      return card.ticks;
     },
     inkedPixels: () => inked_pixels(card.canvas),
     setVisible: (label, visible) => card.set_visible(label, visible),

@@ -1,6 +1,7 @@
 // The parts of the page that are text: head, choices, case, and pages without data.
 import { origin_chip } from "./chart";
 import { h } from "./dom";
+import { cut_note } from "./table";
 import type { ThemeSwitch } from "./theme";
 import type { Choice, Report } from "./types";
 
@@ -45,8 +46,9 @@ function choice_table(choices: Choice[]): HTMLElement {
     h("tr", {}, h("th", { scope: "row" }, choice.what), h("td", { class: "value" }, choice.value), h("td", {}, origin_chip(choice.origin)), h("td", { class: "note" }, choice.note ?? "")),
   );
   const heads = ["What", "Value", "Origin", "Note"].map((text) => h("th", { scope: "col" }, text));
-  return h("div", { class: "table-box", tabindex: 0, role: "region", "aria-label": "Choices" },
+  const box = h("div", { class: "table-box", tabindex: 0, role: "region", "aria-label": "Choices" },
     h("table", {}, h("thead", {}, h("tr", {}, ...heads)), h("tbody", {}, ...rows)));
+  return h("div", {}, box, cut_note(box));
 }
 
 /** Values with a stated origin; those that the user typed follow in a closed box when there are many. */

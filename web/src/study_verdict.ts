@@ -52,7 +52,7 @@ export function counts_text(limit: Limit): string {
   return `${counted(limit)} of ${plural(all, "run")} count; ${effect}.${open_text(limit)}`;
 }
 
-const probability_text = (probability: number): string => `${significant(100 * probability, 2)} %`;
+const probability_text = (probability: number): string => `${significant(100 * probability, 3)} %`;
 
 function facts_of(study: Study, limit: Limit): Fact[] {
   const { fit, dispersion, capacity } = limit;

@@ -42,6 +42,17 @@ function status_chip(text: string): HTMLElement {
 
 const is_number = (value: Cell): value is number => typeof value === "number" && Number.isFinite(value);
 
+/** A line that tells when columns of a table lie beyond the right edge of its box. */
+export function cut_note(box: HTMLElement): HTMLElement {
+  const note = h("p", { class: "cut-note", hidden: true }, "Scroll sideways for the remaining columns.");
+  new ResizeObserver(() => {
+    const cut = box.scrollWidth > box.clientWidth + 1;
+    box.classList.toggle("is-cut", cut);
+    note.hidden = !cut;
+  }).observe(box);
+  return note;
+}
+
 export class TableCard {
   readonly element: HTMLElement;
   readonly table: Table;
@@ -49,7 +60,6 @@ export class TableCard {
   private readonly shown_: Shown[];
   private readonly body_ = h("tbody");
   private readonly box_ = h("div", { class: "table-box", tabindex: 0, role: "region" });
-  private readonly cut_note_ = h("p", { class: "cut-note", hidden: true }, "Scroll sideways for the remaining columns.");
   private readonly heads_: HTMLTableCellElement[] = [];
   private order_: Order = null;
 
@@ -59,14 +69,6 @@ export class TableCard {
     this.shown_ = table.columns.map((column) => this.prepare(column));
     this.element = this.build();
     this.fill();
-    new ResizeObserver(() => this.mark_cut()).observe(this.box_);
-  }
-
-  /** Tells when columns lie beyond the right edge. */
-  private mark_cut(): void {
-    const cut = this.box_.scrollWidth > this.box_.clientWidth + 1;
-    this.element.classList.toggle("is-cut", cut);
-    this.cut_note_.hidden = !cut;
   }
 
   get row_count(): number {
@@ -115,7 +117,7 @@ export class TableCard {
       { class: "card table-card", id: `table-${table.id}` },
       h("header", {}, h("h3", {}, table.title), h("div", { class: "tools" }, h("button", { type: "button", class: "tool-csv", onclick: save }, "CSV"))),
       this.box_,
-      this.cut_note_,
+      cut_note(this.box_),
       table.caption ? h("figcaption", {}, table.caption) : null,
     );
   }

@@ -1,7 +1,7 @@
 // Tick positions and their labels, shared by the screen (uPlot) and the SVG writer so that both agree.
 import { fixed, scientific } from "./format";
 
-/** Multiples of 1, 2 or 5 times a power of ten inside [min, max], about `count` of them. */
+/** Multiples of 1, 2 or 5 times a power of ten inside [min, max], about `count` of them; two at least, without which an axis has no scale. */
 export function linear_ticks(min: number, max: number, count: number): number[] {
   const span = max - min;
   if (!(span > 0) || !Number.isFinite(span)) return [min];
@@ -12,7 +12,7 @@ export function linear_ticks(min: number, max: number, count: number): number[] 
   const first = Math.ceil(min / step - 1e-9);
   const last = Math.floor(max / step + 1e-9);
   for (let i = first; i <= last; i++) ticks.push(i * step);
-  return ticks;
+  return ticks.length < 2 ? linear_ticks(min, max, 2 * Math.max(1, count)) : ticks;
 }
 
 /** Powers of ten inside [min, max], thinned to about `count`; with 2 and 5 when less than two decades show. */

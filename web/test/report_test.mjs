@@ -414,7 +414,7 @@ async function check_phone() {
 
 /** Nothing is cut off on a desktop screen: tables show their last column, tiles hold their text, labels of the model are apart. */
 async function check_layout() {
-  for (const width of [1400, 1000, 400]) {
+  for (const width of [1400, 1000, 390]) {
     const { context, page } = await open(browser, url, { viewport: { width, height: 1000 } });
     await page.evaluate(() => window.upliftReport.renderAll());
     await page.waitForTimeout(200);
@@ -428,8 +428,10 @@ async function check_layout() {
       return {
         page: document.documentElement.scrollWidth - document.documentElement.clientWidth,
         tables: tables.map(name),
-        untold: tables.filter((e) => e.matches(".table-card .table-box") && !e.closest(".choices") && e.parentElement.querySelector(".cut-note")?.hidden !== false).map(name),
+        untold: tables.filter((e) => e.matches(".table-card .table-box") && !e.closest("details:not([open])") && e.parentElement.querySelector(".cut-note")?.hidden !== false).map(name),
         tiles: [...document.querySelectorAll(".fact, .fact *, .readouts > div, .run-chips, .beside th, .beside td, .criterion > *")].filter(cut).map(name),
+        beyond: [...document.querySelectorAll(".beside")].filter((e) => e.offsetWidth > e.parentElement.clientWidth + 1).map(name),
+        bare: window.upliftReport.charts.filter((c) => c.ticks.some((count) => count < 2)).map((c) => c.id),
         overlaps: labels.flatMap((a, i) => labels.slice(i + 1).filter((b) => meet(a.box, b.box)).map((b) => `${a.text} / ${b.text}`)),
         outside: labels.filter(({ box }) => box.x < 0 || box.y < 0 || box.x + box.width > w || box.y + box.height > h).map(({ text }) => text),
       };
@@ -438,6 +440,8 @@ async function check_layout() {
     if (width === 1400) check.equal(found.tables.length, 0, `all tables show their last column at ${width} px (${found.tables.join("; ")})`);
     check.equal(found.untold.length, 0, `a table that is cut at ${width} px says so (${found.untold.join("; ")})`);
     check.equal(found.tiles.length, 0, `tiles hold their text at ${width} px (${found.tiles.join("; ")})`);
+    check.equal(found.beyond.length, 0, `numbers of the verdict lie inside their card at ${width} px (${found.beyond.join("; ")})`);
+    check.equal(found.bare.length, 0, `axes have two ticks at least at ${width} px (${found.bare.join("; ")})`);
     check.equal(found.overlaps.length, 0, `labels of the model do not overlap (${found.overlaps.join("; ")})`);
     check.equal(found.outside.length, 0, `labels of the model lie inside the drawing (${found.outside.join("; ")})`);
     await context.close();

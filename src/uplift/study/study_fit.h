@@ -38,7 +38,7 @@ struct StudyLimitFit {
   long without_demand = 0;                       // runs of a cloud whose demand is 0, which has no logarithm: at most the limit
   std::optional<CloudFit> regression;            // of a cloud
   BothWays fit{Refused{"there are no runs"}, Refused{"there are no runs"}, Refused{"there are no runs"}};
-  OrRefused<TwoWayLayout> layout = Refused{"it is of searches, with two samples and two motions at least, crossed"};
+  OrRefused<TwoWayLayout> layout = Refused{"it needs a search of the capacity, with at least two samples and two motions, crossed"};
   OrRefused<SharedError> shared = Refused{"it is of stripes and clouds"};  // of the fit in the middle
   OrRefused<Bootstrap> bootstrap = Refused{"the plan asks for none"};      // of the fit in the middle
   OrRefused<SeismicCapacity> capacity = Refused{"there are no runs"};      // with the factors of safety of the plan

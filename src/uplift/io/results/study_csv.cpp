@@ -55,7 +55,7 @@ std::string text_of(const ConfidenceInterval& interval) {
 std::string probability_text(double probability) {
   constexpr double least = 1e-5, most = 0.99;
   if (probability < least) return "below 0.001 %";
-  return probability > most ? "above 99 %" : fmt::format("{:.2g} %", 100 * probability);
+  return probability > most ? "above 99 %" : fmt::format("{:.3g} %", 100 * probability);
 }
 
 std::string_view composite_words(const StudySite& site) {

@@ -150,8 +150,9 @@ const Section& study_section() {
        table("hazard", hazard_section(), "hazard curve; absent: none").optional(),
        tables("factor", factor_section(), "factors of safety that the runs do not vary"),
        integer("bootstrap",
-               "draws of a parametric bootstrap of every fit, whose intervals stand beside those of the likelihood; 0: none. Runs count as "
-               "independent in it")
+               "draws of a parametric bootstrap of every fit, whose intervals stand beside those of the likelihood: at least 200; 0: none. "
+               "Runs "
+               "count as independent in it")
            .between(0, 100000)
            .standard(0),
        flag("floor_spectra", "keep the floor spectra of every run, for percentiles at the levels of stripes or of a cloud").standard(false),
