@@ -159,6 +159,8 @@ class Runs(unittest.TestCase):
                 run = case.run(step_check=False, fields=out)
                 self.assertEqual(sorted(each.name for each in pathlib.Path(folder).iterdir()), ["out", *earlier])
                 self.assertTrue((out / "fields" / "run.pvd").is_file())
+                run.write(out)  # it is there already
+                self.assertTrue((out / "fields" / "run.pvd").is_file())
             run.write(pathlib.Path(folder) / "mine")
             self.assertEqual(sorted(each.name for each in out.iterdir()), sorted(["fields", *os.listdir(folder + "/mine")]))
             self.assertEqual((out / "histories.csv").read_bytes(), (pathlib.Path(folder) / "mine" / "histories.csv").read_bytes())

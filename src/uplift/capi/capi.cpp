@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -13,6 +14,7 @@
 #include <stdexcept>
 
 #include "uplift.h"
+#include "uplift/base/file.h"
 #include "uplift/case/schema/sections.h"
 #include "uplift/io/results/trust_json.h"
 #include "uplift/io/text/json_reader.h"
@@ -32,6 +34,7 @@ struct uplift_case {
 struct uplift_results {
   std::shared_ptr<const uplift::LoadedCase> loaded;
   uplift::Results results;
+  std::string folder;        // of the fields, with all results
   mutable std::mutex mutex;  // of the texts that are made when they are asked for
   mutable std::optional<std::string> json, page;
 };
@@ -127,10 +130,11 @@ class Caller {
     return made;
   }
   /// With the other results beside them, fields are results like those of the program: a later run moves them aside.
-  void finish(const uplift_results& made) {
+  void finish(uplift_results& made) {
     if (!folder_) return;
     write_results(*made.loaded, made.results, *folder_);
     folder_->finish();
+    made.folder = std::filesystem::absolute(folder_->path()).string();
   }
 
  private:
@@ -172,6 +176,15 @@ int analyse(Analysis analysis, const uplift_case* each, const uplift_options* op
     caller.finish(*results);
     *made = results.release();
   });
+}
+
+/// Whether the results are in this folder already, because their fields are.
+bool stand_there(const uplift_results& results, const char* folder) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path summary = fs::path(results.folder) / "summary.json";
+  return !results.folder.empty() && fs::equivalent(folder, results.folder, error) && fs::exists(summary, error) &&
+         read_file(summary) == results_json(*results.loaded, results.results);
 }
 
 const RunResult* run_of(const uplift_results* results, std::size_t run) noexcept {
@@ -311,8 +324,9 @@ int uplift_results_report(const uplift_results* results, const char** page, upli
 int uplift_results_write(const uplift_results* results, const char* folder, char** moved, uplift_error* error) {
   return guarded(error, [&] {
     if (moved != nullptr) *moved = nullptr;
-    ResultFolder target(needed(folder, "folder"));
-    write_results(*needed(results, "results")->loaded, results->results, target);
+    if (stand_there(*needed(results, "results"), needed(folder, "folder"))) return;
+    ResultFolder target(folder);
+    write_results(*results->loaded, results->results, target);
     const std::string earlier = target.finish();
     if (moved != nullptr && !earlier.empty()) *moved = copy_of(earlier);
   });
