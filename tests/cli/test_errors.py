@@ -85,6 +85,15 @@ class BadInput(CliTest):
         err = self.uplift("check", self.write(text).name, expect=2).stderr
         self.assertRegex(err, rf'^error: case\.toml:{line_of(text, "loose")}: .* a mechanism: "loose" can move .*; hold it by a \[\[support\]\] or a \[\[spring\]\]$')
 
+    def test_a_mechanism_of_a_variant_is_told_at_its_law(self):
+        pier = (pathlib.Path(__file__).resolve().parents[2] / "examples" / "05_bridge_pier" / "case.toml").read_text()
+        text = pier + '\n[[variant]]\nname = "smooth"\nlaw = { type = "springs", K_n = "80 MPa/m" }  # smooth\n'
+        self.write(text)
+        for command in ("check", "compare"):
+            err = self.uplift(command, "case.toml", expect=2).stderr
+            self.assertIn(f'case.toml:{line_of(text, "# smooth")}: expected a structure that stands', err)
+            self.assertIn("K_t of an interface", err)
+
     def test_wrong_type(self):
         text = self.replace("points = 11", 'points = "many"')
         self.refused(text, f'{{file}}:{line_of(text, "points")}: interface[0].footing.points: expected an integer from 1 to 100000, found the text "many"')

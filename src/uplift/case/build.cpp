@@ -209,8 +209,7 @@ Model make_model(const Case& read, const RunSpec& spec, const std::vector<double
 }
 
 /// The model of the static stages, with the laws that the run takes.
-std::shared_ptr<const Model> resting_model(const Case& read, const RunSpec& spec, const std::vector<double>& tuned,
-                                           const BuiltCase& built) {
+std::shared_ptr<Model> resting_model(const Case& read, const RunSpec& spec, const std::vector<double>& tuned, const BuiltCase& built) {
   BuiltCase scratch;
   CaseNames names;
   auto rest = std::make_shared<Model>();
@@ -344,6 +343,12 @@ void choose_pictures(const Case& read, const RunSpec& spec, BuiltCase& built) {
   built.plan.frames = std::min(wanted, std::max(2, static_cast<int>(most_pictures_in_space(built.plan.pictured.size())) - beside));
 }
 
+/// What is wrong with a joint because of the law of a variant is told at that law.
+void tell_at_law(const RunSpec& spec, const BuiltCase& built, Model& model) {
+  for (std::size_t k = 0; k < built.behaviours.size(); ++k)
+    if (built.behaviours[k] == spec.law) model.assembly.interface_where[k] = spec.law->where();
+}
+
 }  // namespace
 
 bool change_steps(const Case& read, const RunSpec& spec, BuiltCase& built) {
@@ -371,6 +376,7 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
   built.plan.stages = stages_of(read, spec);
   check_second_order_water(read);
   move_model(make_model(read, spec, tuned, nullptr, names, built), built.model);
+  tell_at_law(spec, built, built.model);
   const bool released = any_released(*read.input);
   const bool rests = std::ranges::any_of(built.plan.stages, [](const Stage& stage) { return stage.type == Stage::Type::statics; });
   if (!released && rests) check_static(built.model, places_of_nodes(read));
@@ -387,7 +393,9 @@ BuiltCase build(const Case& read, const RunSpec& spec) {
   adapt_laws(read, spec, built);
   if (released) {
     check_release(read.input->stages, plan.stages);
-    plan.rest = resting_model(read, spec, tuned, built);
+    const auto rest = resting_model(read, spec, tuned, built);
+    tell_at_law(spec, built, *rest);
+    plan.rest = rest;
     check_static(*plan.rest, places_of_nodes(read));
   }
   add_method(read, spec, built);
