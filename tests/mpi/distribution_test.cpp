@@ -275,7 +275,7 @@ void compare_by_cells(const std::string& text, const Mesh& mesh, double share) {
     const Sparse whole = k * one.stiffness + c * one.damping + m * one.mass;
     const std::vector<DistributedTerm> terms = distributed_terms(other, k, c, m);
     Vector diagonal = Vector::Zero(n), size(n), x(n), product(n);
-    for (const auto& [factor, matrix] : terms) diagonal += factor * matrix->diagonal();
+    for (const DistributedTerm& term : terms) diagonal += term.factor * term.matrix->diagonal();
     EXPECT_LE((diagonal - whole.diagonal()).cwiseAbs().maxCoeff(), 1e-13 * whole.diagonal().maxCoeff());
     for (Index i = 0; i < n; ++i) size[i] = 1 / std::sqrt(std::max(diagonal[i], 1e-30));  // no unit is larger than another
     for (int trial = 1; trial <= 3; ++trial) {

@@ -76,6 +76,7 @@ int run_from(const Options& options, const std::string& from) {
     else
       say(fmt::format("{}: {} in {}{}, {}", status_text(main), counted(main.counts.steps, "step", "steps"), format_quantity(main.wall, "s"),
                       per_step, counted(main.counts.retries, "retry", "retries")));
+    if (!main.solver.empty()) say("solver: " + main.solver);
     say(fmt::format("results: {}/report.html", folder.path()));
     for (const std::string& list : results.field_lists) say(fmt::format("fields: {}/{} (for ParaView)", folder.path(), list));
   }

@@ -69,6 +69,22 @@ PetscErrorCode CellMatrix::multiply(Vec x, Vec y) {
   PetscFunctionReturn(0);
 }
 
+std::vector<Triplet> CellMatrix::upper_among(const std::vector<PetscInt>& chosen) const {
+  const RankCells& cells = *cells_.cells;
+  std::vector<int> number(cells.places(), -1);
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    const PetscInt own = chosen[k] - cells.first();
+    if (own >= 0 && own < cells.own()) {
+      number[static_cast<std::size_t>(own)] = static_cast<int>(k);
+      continue;
+    }
+    const auto other = std::ranges::lower_bound(cells.others(), chosen[k]);
+    if (other != cells.others().end() && *other == chosen[k])
+      number[static_cast<std::size_t>(cells.own() + (other - cells.others().begin()))] = static_cast<int>(k);
+  }
+  return cells.upper_among(cells_.local, cells_.scale, number);
+}
+
 PetscErrorCode CellMatrix::diagonal_of(Mat matrix, Vec diagonal) {
   PetscFunctionBeginUser;
   CellMatrix* self = nullptr;

@@ -30,6 +30,9 @@ class CellMatrix {
     return cells_.cells->bytes() + sizeof(double) * static_cast<double>(cells_.scale.size() + from_.size() + to_.size());
   }
   double operations() const { return cells_.cells->operations(); }
+  /// What the cells add to S A S between chosen unknowns (ascending, of all ranks), by their numbers among these: upper triangle, rows of
+  /// this rank, a summand of every cell.
+  std::vector<Triplet> upper_among(const std::vector<PetscInt>& chosen) const;
 
  private:
   static PetscErrorCode product_of(Mat matrix, Vec x, Vec y);

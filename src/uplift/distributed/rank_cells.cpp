@@ -136,6 +136,27 @@ Vector RankCells::diagonal(const std::vector<Matrix>& local) const {
   return sum.head(own_);
 }
 
+std::vector<Triplet> RankCells::upper_among(const std::vector<Matrix>& local, const std::vector<double>& scale,
+                                            const std::vector<int>& number) const {
+  std::vector<Triplet> sum;
+  for (std::size_t k = 0; k < classes_.size(); ++k) {
+    if (local[k].size() == 0) continue;
+    const auto unknowns = static_cast<std::size_t>(classes_[k].unknowns);
+    for (std::size_t cell = 0; cell < classes_[k].cells; ++cell) {
+      const PetscInt* first = classes_[k].place.data() + cell / block * unknowns * block + cell % block;
+      for (std::size_t i = 0; i < unknowns; ++i) {
+        const auto row = static_cast<std::size_t>(first[i * block]);
+        if (row >= static_cast<std::size_t>(own_) || number[row] < 0) continue;
+        for (std::size_t j = 0; j < unknowns; ++j)
+          if (const auto column = static_cast<std::size_t>(first[j * block]); number[column] >= number[row])
+            sum.emplace_back(number[row], number[column],
+                             scale[row] * local[k](static_cast<Index>(i), static_cast<Index>(j)) * scale[column]);
+      }
+    }
+  }
+  return sum;
+}
+
 double RankCells::bytes() const {
   double sum = sizeof(PetscInt) * static_cast<double>(others_.size());
   for (const Class& one : classes_) sum += sizeof(PetscInt) * static_cast<double>(one.place.size());

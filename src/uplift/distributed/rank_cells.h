@@ -24,6 +24,10 @@ class RankCells {
   void add_product(const std::vector<Matrix>& local, const double* x, double* y) const;
   /// The diagonal of the sum in the rank's own rows.
   Vector diagonal(const std::vector<Matrix>& local) const;
+  /// What the cells add to the rank's own rows between chosen places, scaled, by the numbers of these (-1: not chosen): upper triangle, a
+  /// summand of every cell.
+  std::vector<Triplet> upper_among(const std::vector<Matrix>& local, const std::vector<double>& scale,
+                                   const std::vector<int>& number) const;
   double bytes() const;
   /// Multiplications of one product.
   double operations() const;

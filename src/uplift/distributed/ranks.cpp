@@ -116,39 +116,43 @@ void Ranks::serve() {
   }
 }
 
-Ranks::Made Ranks::make(const SymmetricSum& matrix, const Vector& scale, const std::string& options, const RigidMotions& motions) {
+Ranks::Made Ranks::make(const SymmetricSum& matrix, const Vector& scale, const std::string& options, const RigidMotions& motions,
+                        const std::vector<int>& stiff) {
   const std::lock_guard lock(one_at_a_time_);
   HalfWay half_way(half_way_);
   const Order order{What::make, ++made_, matrix.rows(), motions.motions.cols(), std::ssize(options), std::ssize(matrix.there)};
   tell(order);
-  const Scaled scaled{matrix, scale, motions};
+  const Scaled scaled{matrix, scale, motions, stiff};
   Made made = make_together(order, &scaled, options);
   half_way.done();
   return made;
 }
 
 Ranks::Made Ranks::make_together(const Order& order, const Scaled* matrix, std::string options) {
-  Made made{order.system, {}, 0};
+  Made made{order.system, {}, 0, {}};
   const SolverOptions given(spread_text(order.letters, std::move(options)));
   auto system = std::make_unique<System>(ranks_);
   const std::vector<int> node = spread_nodes(order, matrix);
   made.outcome = set_sum(*system, order, matrix, node);
   if (made.outcome.ok() && order.columns > 0)
     made.outcome = system->set_motions(spread_motions(order, matrix), static_cast<PetscInt>(order.columns));
+  system->set_stiff(spread_stiff(matrix));
   if (made.outcome.ok()) made.outcome = system->prepare(given);
   made.nonzeros = system->nonzeros();
+  made.remark = system->remark();
   std::vector<double> scale = own_rows(order.rows, matrix != nullptr ? matrix->scale.data() : nullptr);
   if (made.outcome.ok()) systems_[order.system] = {std::move(system), std::move(scale)};
   return made;
 }
 
-Ranks::Forecast Ranks::foretell(const SymmetricSum& matrix, const Vector& scale, const std::string& options) {
+Ranks::Forecast Ranks::foretell(const SymmetricSum& matrix, const Vector& scale, const std::string& options,
+                                const std::vector<int>& stiff) {
   const std::lock_guard lock(one_at_a_time_);
   HalfWay half_way(half_way_);
   const Order order{What::foretell, 0, matrix.rows(), 0, std::ssize(options), std::ssize(matrix.there)};
   tell(order);
   const RigidMotions none;
-  const Scaled scaled{matrix, scale, none};
+  const Scaled scaled{matrix, scale, none, stiff};
   Forecast forecast = foretell_together(order, &scaled, options);
   half_way.done();
   return forecast;
@@ -159,6 +163,7 @@ Ranks::Forecast Ranks::foretell_together(const Order& order, const Scaled* matri
   const SolverOptions given(spread_text(order.letters, std::move(options)));
   System system(ranks_);
   forecast.outcome = set_sum(system, order, matrix, {});
+  system.set_stiff(spread_stiff(matrix));
   if (forecast.outcome.ok()) forecast.outcome = system.foretell(given, forecast.mine);
   MPI_Comm machine = MPI_COMM_NULL;
   MPI_Comm_split_type(ranks_, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &machine);
@@ -292,6 +297,16 @@ std::vector<int> Ranks::spread_nodes(const Order& order, const Scaled* matrix) c
   MPI_Scatterv(matrix == nullptr ? nullptr : matrix->motions.node.data(), of.counts.data(), of.firsts.data(), MPI_INT, node.data(), count,
                MPI_INT, 0, ranks_);
   return node;
+}
+
+std::vector<PetscInt> Ranks::spread_stiff(const Scaled* matrix) const {
+  std::vector<PetscInt> stiff;
+  if (matrix != nullptr) stiff.assign(matrix->stiff.begin(), matrix->stiff.end());
+  int count = static_cast<int>(stiff.size());
+  MPI_Bcast(&count, 1, MPI_INT, 0, ranks_);
+  stiff.resize(static_cast<std::size_t>(count));
+  MPI_Bcast(stiff.data(), count, MPIU_INT, 0, ranks_);
+  return stiff;
 }
 
 /// The rank's rows of the motions of S A S, which are S^-1 times those of A, one column after another.

@@ -29,10 +29,12 @@ class Ranks {
     std::int64_t system = 0;  // its number
     SystemOutcome outcome;
     double nonzeros = 0;
+    std::string remark;  // see System
   };
   /// Shares a symmetric matrix as S A S with the diagonal S, and prepares its solver. Of what stands on rank 0 rows are sent; the terms are
-  /// kept matrices, whose rows the ranks have. `motions`: what deforms A least, may have none.
-  Made make(const SymmetricSum& matrix, const Vector& scale, const std::string& options, const RigidMotions& motions = {});
+  /// kept matrices, whose rows the ranks have. `motions`: what deforms A least, may have none. `stiff`: unknowns of stiff parts, ascending.
+  Made make(const SymmetricSum& matrix, const Vector& scale, const std::string& options, const RigidMotions& motions = {},
+            const std::vector<int>& stiff = {});
   struct Forecast {
     SystemOutcome outcome;
     SystemCost mine;            // of rank 0
@@ -40,7 +42,7 @@ class Ranks {
     double beside = 0;          // bytes of all other ranks on the machine of rank 0
   };
   /// What `make` would take.
-  Forecast foretell(const SymmetricSum& matrix, const Vector& scale, const std::string& options);
+  Forecast foretell(const SymmetricSum& matrix, const Vector& scale, const std::string& options, const std::vector<int>& stiff = {});
   struct Kept {
     std::int64_t matrix = 0;      // its number
     std::vector<double> entries;  // of each rank
@@ -101,6 +103,7 @@ class Ranks {
     const SymmetricSum& matrix;
     const Vector& scale;
     const RigidMotions& motions;
+    const std::vector<int>& stiff;
   };
   struct KeptRows {
     Sparse columns;                          // rows x local: the rank's rows, as columns
@@ -130,6 +133,7 @@ class Ranks {
   std::vector<double> own_rows(std::int64_t rows, const double* vector) const;
   void gather(const Vector& own, std::int64_t rows, Vector* all) const;
   std::vector<int> spread_nodes(const Order& order, const Scaled* matrix) const;
+  std::vector<PetscInt> spread_stiff(const Scaled* matrix) const;
   std::vector<double> spread_motions(const Order& order, const Scaled* matrix) const;
   SystemOutcome set_sum(System& system, const Order& order, const Scaled* matrix, const std::vector<int>& node) const;
   LocalRows spread_rows(PetscInt rows, const Scaled* matrix) const;

@@ -109,6 +109,7 @@ class PetscSolver final : public DistributedSolver {
   struct Settings {
     std::string options, of_statics;  // of PETSc
     double reach = 0;                 // m
+    bool stiff_block = true;
   };
   explicit PetscSolver(Settings settings, RigidMotions motions = {}) : settings_(std::move(settings)), motions_(std::move(motions)) {}
   Factorisation factorise(const Sparse& a) const override { return factorise_sum(a); }
@@ -120,18 +121,20 @@ class PetscSolver final : public DistributedSolver {
   Factorisation factorise_sum(const SymmetricSum& a) const override {
     Vector scale;
     if (const int loose = find_scale(a, scale); loose >= 0) return singular_at(loose);
-    Ranks::Made made = Ranks::all().make(a, scale, settings_.options, motions_);
+    Ranks::Made made = Ranks::all().make(a, scale, settings_.options, motions_, stiff_part(a, scale));
     if (!made.outcome.ok())
       return {.factor = nullptr, .failed_unknown = -1, .why = std::move(made.outcome.why), .too_large = made.outcome.too_large};
-    return {
-        .factor = std::make_unique<PetscFactor>(made.system, a.rows(), made.nonzeros, settings_.reach), .failed_unknown = -1, .why = {}};
+    return {.factor = std::make_unique<PetscFactor>(made.system, a.rows(), made.nonzeros, settings_.reach),
+            .failed_unknown = -1,
+            .why = {},
+            .remark = std::move(made.remark)};
   }
   FactorCost predict_sum(const SymmetricSum& a) const override {
     FactorCost cost;
     cost.unknowns = static_cast<double>(a.rows());
     Vector scale;
     if (find_scale(a, scale) >= 0) return cost;  // the factorisation will refuse it
-    const Ranks::Forecast forecast = Ranks::all().foretell(a, scale, settings_.options);
+    const Ranks::Forecast forecast = Ranks::all().foretell(a, scale, settings_.options, stiff_part(a, scale));
     cost.entries = forecast.mine.entries, cost.operations = forecast.mine.operations;
     cost.bytes = forecast.mine.bytes;
     cost.why = forecast.outcome.why;
@@ -151,7 +154,8 @@ class PetscSolver final : public DistributedSolver {
       return {.factor = nullptr, .failed_unknown = -1, .why = "the flexibility of the interfaces is not positive definite"};
     return {.factor = std::make_unique<PetscSplit>(std::move(whole.factor), a.rows(), last, Matrix(turned->matrixL()).reverse()),
             .failed_unknown = -1,
-            .why = {}};
+            .why = {},
+            .remark = std::move(whole.remark)};
   }
 
   static bool no_entries(const std::string& options) { return SolverOptions(options).need_no_entries(); }
@@ -159,7 +163,7 @@ class PetscSolver final : public DistributedSolver {
   /// Multigrid alone makes use of the motions.
   std::unique_ptr<const LinearSolver> for_statics(const RigidMotions& motions) const override {
     const std::string& options = settings_.of_statics;
-    return std::make_unique<PetscSolver>(Settings{options, options, settings_.reach},
+    return std::make_unique<PetscSolver>(Settings{options, options, settings_.reach, settings_.stiff_block},
                                          options.find("gamg") != std::string::npos ? motions : RigidMotions());
   }
   /// None: it would be one more copy of both matrices on rank 0.
@@ -167,6 +171,13 @@ class PetscSolver final : public DistributedSolver {
   bool distributed() const override { return true; }
 
  private:
+  /// Of the matrix of a step, a sum of mass and other terms.
+  std::vector<int> stiff_part(const SymmetricSum& a, const Vector& scale) const {
+    const auto mass = std::ranges::find_if(a.there, &DistributedTerm::is_mass);
+    if (!settings_.stiff_block || !no_entries(settings_.options) || mass == a.there.end() || a.there.size() < 2) return {};
+    return stiff_unknowns(scale, mass->factor * mass->matrix->diagonal());
+  }
+
   Settings settings_;
   RigidMotions motions_;
 };
@@ -184,8 +195,8 @@ std::unique_ptr<const LinearSolver> make_petsc(const Values& values) {
     return given;
   };
   const std::string& of_steps = options("options");
-  return std::make_unique<PetscSolver>(
-      PetscSolver::Settings{of_steps, values.has("static_options") ? options("static_options") : of_steps, values.number("reach")});
+  return std::make_unique<PetscSolver>(PetscSolver::Settings{of_steps, values.has("static_options") ? options("static_options") : of_steps,
+                                                             values.number("reach"), values.flag("stiff_block")});
 }
 
 }  // namespace uplift

@@ -223,6 +223,10 @@ PetscErrorCode System::analyse(SystemCost& cost) {
   PetscCall(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCGAMG, &multigrid));
   // while its levels are made: prolongations and products of them, measured with smoothed aggregates in blocks of soil in space
   if (multigrid == PETSC_TRUE) cost.bytes += 3 * own.nz_used * (sizeof(PetscScalar) + sizeof(PetscInt));
+  if (stiff_block_ != nullptr) {
+    const FactorCost block = stiff_block_->predict();
+    cost.bytes += block.bytes + block.working_bytes;
+  }
   if (factor_ == nullptr) PetscFunctionReturn(0);
   cost.bytes += (own.nz_used + local_) / 2 * (sizeof(PetscScalar) + 2 * sizeof(PetscInt));  // what MUMPS is given
   MatFactorInfo info;
@@ -267,6 +271,12 @@ PetscErrorCode System::choose(const SolverOptions& options, SystemOutcome& outco
     PetscCall(use_mumps(options));
   else
     PetscCall(MatSetOption(matrix(), MAT_SPD, PETSC_TRUE));
+  PetscBool diagonal = PETSC_FALSE;
+  PetscCall(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCJACOBI, &diagonal));
+  if (!stiff_.empty() && diagonal == PETSC_TRUE && options.need_no_entries()) {
+    stiff_block_ = std::make_unique<StiffBlock>(std::move(stiff_));
+    PetscCall(stiff_block_->collect(matrix_, cells_.get()));
+  }
   block_ = alone == PETSC_TRUE;
   if (factor_ == nullptr && (cholesky == PETSC_TRUE || cg == PETSC_FALSE))
     outcome.why =
@@ -300,6 +310,7 @@ PetscErrorCode System::set_up(SystemOutcome& outcome) {
   PetscFunctionBeginUser;
   PC pc = nullptr;
   PCFailedReason failed = PC_NOERROR;
+  if (stiff_block_ != nullptr) PetscCall(use_stiff_block());
   PetscCall(KSPSetUp(solver_));
   PetscCall(KSPGetPC(solver_, &pc));
   PetscCall(PCGetFailedReason(pc, &failed));
@@ -317,6 +328,30 @@ PetscErrorCode System::set_up(SystemOutcome& outcome) {
   }
   if (factor_ != nullptr) PetscCall(check_pivots(outcome));
   if (outcome.ok() && !block_) PetscCall(try_out(outcome));
+  if (stiff_block_ != nullptr)
+    remark_ = fmt::format(
+        "{} unknowns of stiff parts are factorised as one block of the preconditioner ({:.2g} million entries); conjugate "
+        "gradients take {} iterations for a trial load",
+        stiff_block_->unknowns(), 1e-6 * stiff_block_->nonzeros(), iterations_);
+  PetscFunctionReturn(0);
+}
+
+/// Without a factor of it the preconditioner stays the diagonal.
+PetscErrorCode System::use_stiff_block() {
+  PetscFunctionBeginUser;
+  std::string why;
+  stiff_block_->factorise(why);
+  int fails = why.empty() ? 0 : 1;
+  PetscCallMPI(MPI_Bcast(&fails, 1, MPI_INT, 0, ranks_));
+  if (fails == 0) {
+    PC pc = nullptr;
+    PetscCall(KSPGetPC(solver_, &pc));
+    PetscCall(stiff_block_->become(pc));
+    PetscFunctionReturn(0);
+  }
+  remark_ =
+      fmt::format("{} unknowns of stiff parts are not factorised as a block of the preconditioner: {}", stiff_block_->unknowns(), why);
+  stiff_block_.reset();
   PetscFunctionReturn(0);
 }
 

@@ -9,6 +9,7 @@
 
 #include "uplift/distributed/cell_matrix.h"
 #include "uplift/distributed/node_blocks.h"
+#include "uplift/distributed/stiff_block.h"
 
 namespace uplift {
 
@@ -76,6 +77,8 @@ class System {
   SystemOutcome set(LocalRows local, PetscInt rows, const std::vector<int>& node = {}, ScaledCells cells = {});
   /// The motions that deform it least, from which multigrid makes its coarse levels: the rank's rows, one column after another.
   SystemOutcome set_motions(const std::vector<double>& motions, PetscInt columns);
+  /// The unknowns of stiff parts, ascending and the same on all ranks: a block of the preconditioner where that is the diagonal.
+  void set_stiff(std::vector<PetscInt> unknowns) { stiff_ = std::move(unknowns); }
   /// Factorises it, or prepares the iterative method and tries it on one load. A matrix that is not positive definite is refused: by MUMPS
   /// from the signs of the pivots, where those below LinearSolver::least_pivot count as zero.
   SystemOutcome prepare(const SolverOptions& options);
@@ -89,6 +92,9 @@ class System {
   Mat matrix() const { return cells_ != nullptr ? cells_->get() : matrix_; }
   PetscInt iterations() const { return iterations_; }  // of the last solve
   double nonzeros() const { return nonzeros_; }        // of the factor; of the matrix where there is none, without cells
+  /// What is to be said of the preconditioner, on rank 0; empty: it is the one of the options.
+  const std::string& remark() const { return remark_; }
+  KSP solver() const { return solver_; }
 
  private:
   PetscErrorCode assemble(LocalRows local, PetscInt rows, const std::vector<int>& node, ScaledCells cells);
@@ -96,6 +102,7 @@ class System {
   PetscErrorCode choose(const SolverOptions& options, SystemOutcome& outcome);
   PetscErrorCode analyse(SystemCost& cost);
   PetscErrorCode set_up(SystemOutcome& outcome);
+  PetscErrorCode use_stiff_block();
   PetscErrorCode use_mumps(const SolverOptions& options);
   PetscErrorCode check_pivots(SystemOutcome& outcome);
   PetscErrorCode try_out(SystemOutcome& outcome);
@@ -114,6 +121,9 @@ class System {
   std::unique_ptr<CellMatrix> cells_;        // with the entries; null: they are all
   Vec given_ = nullptr, solved_ = nullptr;   // on the caller's numbers
   KSP solver_ = nullptr;
+  std::vector<PetscInt> stiff_;
+  std::unique_ptr<StiffBlock> stiff_block_;  // null: none
+  std::string remark_;
   bool block_ = false;  // several columns at once
   double tolerance_ = 0;
   double nonzeros_ = 0;

@@ -173,6 +173,7 @@ void BulkFactor::factorise(const SymmetricSum& matrix, const Sparse* b, const Li
     result = uplift::factorise(solver, matrix);
     if (!small_) ++counts.analyses;
   }
+  if (!result.remark.empty()) counts.remark = result.remark;
   if (result.factor == nullptr) {
     too_large_ = result.too_large;
     fail(model, matrix, result.failed_unknown, result.why);
@@ -199,6 +200,7 @@ void BulkFactor::factorise_split(const SymmetricSum& matrix, const LinearSolver&
     result = uplift::factorise_split(solver, matrix, last_);
     if (result.factor != nullptr || !result.why.empty()) ++counts.analyses;
   }
+  if (!result.remark.empty()) counts.remark = result.remark;
   too_large_ = result.too_large;
   if (!result.why.empty()) return fail(model, matrix, result.failed_unknown, result.why);
   split_ = std::move(result.factor);

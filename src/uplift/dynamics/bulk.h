@@ -19,6 +19,7 @@ struct LinearCounts {
   long factorisations = 0, analyses = 0, back_solves = 0;  // analyses: symbolic ones, of sparse matrices
   double residual = 0;                                     // the largest of all factors, see BulkFactor
   std::string notice;                                      // what it is and where it may come from; empty up to 1e-9
+  std::string remark;                                      // of the last solver that had one (Factorisation)
   InterfaceSystems systems;
 };
 

@@ -49,7 +49,7 @@ BulkCost predict_bulk(const Model& model, const LinearSolver& solver, const Bulk
   unit.setIdentity();
   FactorCost statics;
   {
-    const OwnedSum step = matrix_sum(model, 1, 1, 1);
+    const OwnedSum step = matrix_sum(model, 1, use.damping, use.mass);
     cost.step = predict(solver, step, touched);
     cost.step.working_bytes += bytes_of(step.here);
     if (const auto other = use.statics ? solver_for_statics(solver, {}) : nullptr) statics = predict(*other, step, touched);

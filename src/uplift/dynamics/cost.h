@@ -10,10 +10,11 @@ namespace uplift {
 struct BulkUse {
   bool keeps_mass = true;   // a factor of M: for impact rules, and for recorded accelerations that only the balance tells (path average)
   bool propagates = false;  // a second factor of the size of the step's (impact rules `propagate`, and `project_hold` with damping)
-  int step_sizes = 1;       // factors of the step kept: one more for every halving that happens
-  bool impacts = false;     // a second set of interface blocks, of M
-  double record_bytes = 0;  // what the run keeps of its steps
-  bool statics = false;     // a static stage, which some solvers treat by another method than the steps
+  double damping = 1, mass = 1;  // of the matrix of a step, K + damping C + mass M [1/s], [1/s2]
+  int step_sizes = 1;            // factors of the step kept: one more for every halving that happens
+  bool impacts = false;          // a second set of interface blocks, of M
+  double record_bytes = 0;       // what the run keeps of its steps
+  bool statics = false;          // a static stage, which some solvers treat by another method than the steps
 };
 
 /// What the linear bulk of a run takes, known from symbolic analyses before anything large is made (about half of the time of the

@@ -16,7 +16,11 @@ const Entry<LinearSolver>& entry_solver_petsc() {
                          "entries of the flexibility between interface rows farther apart are left out when it is made and "
                          "restored in every step by solves; 0: all are made, with one solve a row")
                       .nonnegative()
-                      .standard(0.0)}},
+                      .standard(0.0),
+                  flag("stiff_block",
+                       "with \"-ksp_type cg -pc_type jacobi\" stiff parts (a building of concrete on soil) are factorised as one block of "
+                       "the preconditioner of the steps, where that saves time; false: the diagonal alone")
+                      .standard(true)}},
       make_petsc};
   return entry;
 }

@@ -45,6 +45,7 @@ struct Factorisation {
   int failed_unknown = -1;
   std::string why;
   bool too_large = false;  // for the memory that is left
+  std::string remark{};    // how the solver chose to solve with it; empty as a rule
 };
 
 /// Factorises symmetric positive definite matrices; the upper triangle is read, the other one may be missing. A pivot that is only

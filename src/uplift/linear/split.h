@@ -39,6 +39,7 @@ struct SplitFactorisation {
   int failed_unknown = -1;
   std::string why;
   bool too_large = false;  // for the memory that is left
+  std::string remark{};    // how the solver chose to solve with it; empty as a rule
 };
 
 }  // namespace uplift

@@ -16,6 +16,7 @@ class DistributedMatrix;
 struct DistributedTerm {
   double factor;
   std::shared_ptr<const DistributedMatrix> matrix;
+  bool is_mass = false;
 };
 
 /// A symmetric matrix of which every process of a job keeps some rows, as long as this object lives.

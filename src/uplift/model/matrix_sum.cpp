@@ -23,7 +23,7 @@ std::vector<DistributedTerm> distributed_terms(const Model& model, double k, dou
   const double of_stiffness = k + c * model.assembly.stiffness_damping, of_mass = m + c * model.assembly.mass_damping;
   if (of_stiffness != 0) terms.push_back({of_stiffness, there.stiffness});
   if (c != 0 && there.damping != nullptr) terms.push_back({c, there.damping});
-  if (of_mass != 0) terms.push_back({of_mass, there.mass});
+  if (of_mass != 0) terms.push_back({of_mass, there.mass, true});
   return terms;
 }
 

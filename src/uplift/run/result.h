@@ -89,6 +89,7 @@ struct RunResult : Recorded {
   Energies final_energy;
   std::string problem;             // the interface problem of the failed step, JSON text
   std::string not_unique;          // why the equilibrium of the last static stage is one of several; empty where it is the only one
+  std::string solver;              // how it solved with the matrix of a step, where it chose; empty as a rule
   std::vector<std::string> notes;  // what the engineer should know: cycles treated, halvings, warnings of laws
 };
 

@@ -53,6 +53,8 @@ RunResult Runner::go() {
   run_.result.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - shown_;
   run_.result.counts.factorisations = run_.linear.factorisations;
   if (!run_.linear.notice.empty()) run_.result.notes.push_back(run_.linear.notice);
+  if (!run_.linear.remark.empty()) run_.result.notes.push_back("solver: " + run_.linear.remark);
+  run_.result.solver = run_.linear.remark;
   run_.result.counts.back_solves = run_.linear.back_solves;
   run_.result.counts.systems = run_.linear.systems;
   return std::move(run_.result);

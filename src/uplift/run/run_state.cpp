@@ -114,7 +114,7 @@ void list_parts(Archive& archive, T& systems) {
 
 template <class Archive, SameAs<LinearCounts> T>
 void list_parts(Archive& archive, T& counts) {
-  archive(counts.factorisations, counts.analyses, counts.back_solves, counts.residual, counts.notice, counts.systems);
+  archive(counts.factorisations, counts.analyses, counts.back_solves, counts.residual, counts.notice, counts.remark, counts.systems);
 }
 
 template <class Archive, SameAs<Counts> T>

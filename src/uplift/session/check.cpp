@@ -165,6 +165,10 @@ CaseFindings find(const Case& read, const RunSpec& spec, const BuiltCase& built)
                                      (built.plan.impact->holds_acceleration() && built.model.damping.nonZeros() > 0));
     const Stage* stage = dynamic_stage(built.plan);
     const bool balanced = stage != nullptr && stage->path_average && !use.impacts;
+    if (stage != nullptr) {
+      const StepWeights weights = weights_of(stage->scheme, stage->step);
+      use.damping = weights.damping, use.mass = weights.mass;
+    }
     use.keeps_mass = use.impacts || (balanced && (records_accelerations(built.plan) || found.fields));
     use.statics = std::ranges::any_of(built.plan.stages, [](const Stage& each) { return each.type == Stage::Type::statics; });
     use.record_bytes = found.record_bytes + pictures_bytes(read, built);
