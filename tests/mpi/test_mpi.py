@@ -183,6 +183,20 @@ class Results(MpiTest):
     def test_mesh_of_soil(self):
         self.assertEqual(self.compare(soil(0.6), "--no-step-check")["runs"][0]["status"], "completed")
 
+    def test_stiff_structure_as_a_block_of_the_preconditioner(self):
+        self.write(RAFT.replace("duration = 0.3", "duration = 0.04").replace('"5 GPa"', '"30 GPa"').replace('[[stage]]\ntype = "static"\n', ""))
+        self.uplift("run", "case.toml", "-q", "-o", "serial", "--no-step-check")
+        serial = self.summary("serial")
+        self.write(f'solver = {{ type = "petsc", options = "{ITERATIVE}", reach = 2 }}\n' + (self.folder / "case.toml").read_text(), "petsc.toml")
+        for ranks in (1, 2):
+            done = self.mpi(ranks, "run", "petsc.toml", "-o", f"{ranks}", "--no-step-check")
+            with self.subTest(ranks=ranks):
+                parallel = self.summary(f"{ranks}")
+                self.assert_same(serial, parallel)
+                (said,) = (line for line in done.stdout.splitlines() if line.startswith("solver: "))
+                self.assertRegex(said, r"^solver: \d+ unknowns of stiff parts are factorised as one block")
+                self.assertIn(said, parallel["runs"][0]["notes"])
+
     def test_springs_on_few_unknowns(self):
         self.compare(BASE, ranks=(2, 4))
 

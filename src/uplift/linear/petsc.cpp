@@ -7,7 +7,8 @@ const Entry<LinearSolver>& entry_solver_petsc() {
       {.name = "petsc",
        .summary = "PETSc on the processes of an MPI job, in the program uplift-mpi only: MUMPS, or iterative by its options",
        .equations = "D^-1/2 A D^-1/2 = P^T L D' L^T P by MUMPS, D: diagonal of A, where there are no options;\n"
-                    "else a Krylov method: conjugate gradients until |r| <= 1e-12 |b|, weights 1/sqrt(A_ii), where they name none",
+                    "else a Krylov method: conjugate gradients until |r| <= 1e-12 |b|, weights 1/sqrt(A_ii), where they name none;\n"
+                    "with Jacobi's preconditioner, in dynamic stages: diag(A_ss, D_rr), s: unknowns of stiff parts, r: all others",
        .source = "PETSc 3.18 (Balay et al., Users Manual ANL-21/39, 2022); MUMPS 5.5 (Amestoy, Duff, L'Excellent & Koster, SIAM J. Matrix "
                  "Anal. Appl. 23, 2001)",
        .params = {text("options", "options of PETSc, as \"-ksp_type cg -pc_type jacobi\"; empty: a factorisation by MUMPS").standard(""),
