@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <numeric>
 
+#include "mpi/mesh_support.h"
 #include "unit/case/cut_support.h"
 #include "uplift/linear/large.h"
 #include "uplift/model/matrix_sum.h"
+#include "uplift/model/numbering.h"
 
 namespace uplift {
 namespace {
@@ -119,8 +121,24 @@ std::string cut() {
          at_rest_stages;
 }
 
-/// The matrix of the terms, whole. Its rows are kept as the columns of the serial program, which round-off lets differ from the rows.
-Sparse gathered(const std::vector<DistributedTerm>& terms, Index rows) {
+/// The numbers of the serial program for the unknowns of a model.
+std::vector<int> serial_numbers(const Model& model) {
+  std::vector<int> number = numbers_by_nodes(model);
+  if (!number.empty()) return number;
+  number.resize(static_cast<std::size_t>(model.free()));
+  std::iota(number.begin(), number.end(), 0);
+  return number;
+}
+
+Vector renumbered(const std::vector<int>& number, Vector vector) {
+  renumber(number, vector);
+  return vector;
+}
+
+/// The matrix of the terms, whole, in the order of the serial program. Its rows are kept as the columns of the serial program, which
+/// round-off lets differ from the rows.
+Sparse gathered(const std::vector<DistributedTerm>& terms, const std::vector<int>& number) {
+  const Index rows = std::ssize(number);
   std::vector<Triplet> entries;
   Vector unit = Vector::Zero(rows), column(rows);
   for (Index j = 0; j < rows; ++j) {
@@ -128,7 +146,7 @@ Sparse gathered(const std::vector<DistributedTerm>& terms, Index rows) {
     terms.front().matrix->multiply(terms, unit, column);
     unit[j] = 0;
     for (Index i = 0; i < rows; ++i)
-      if (column[i] != 0) entries.emplace_back(static_cast<int>(j), static_cast<int>(i), column[i]);
+      if (column[i] != 0) entries.emplace_back(number[j], number[i], column[i]);
   }
   Sparse whole(rows, rows);
   whole.setFromTriplets(entries.begin(), entries.end());
@@ -158,11 +176,12 @@ void compare(const std::string& text, const Mesh& mesh) {
     ASSERT_EQ(other.free(), n);
     ASSERT_GT(n, most_undistributed);
     ASSERT_NE(other.distributed, nullptr);
+    const std::vector<int> to_serial = serial_numbers(other), to_ranks = inverse(to_serial);
     // bit for bit, and nothing of them is whole
     for (const auto& [matrix, terms] :
          {std::pair(&Model::stiffness, distributed_terms(other, 1, 0, 0)), std::pair(&Model::mass, distributed_terms(other, 0, 0, 1))}) {
-      EXPECT_TRUE(Matrix(gathered(terms, n)) == Matrix(one.*matrix)) << difference(gathered(terms, n), one.*matrix);
-      EXPECT_TRUE(diagonal_of(other, matrix) == Vector((one.*matrix).diagonal()));
+      EXPECT_TRUE(Matrix(gathered(terms, to_serial)) == Matrix(one.*matrix)) << difference(gathered(terms, to_serial), one.*matrix);
+      EXPECT_TRUE(renumbered(to_serial, diagonal_of(other, matrix)) == Vector((one.*matrix).diagonal()));
       EXPECT_EQ((other.*matrix).nonZeros(), 0);
       const std::vector<double>& entries = terms.front().matrix->entries();
       EXPECT_EQ(std::accumulate(entries.begin(), entries.end(), 0.0), static_cast<double>((one.*matrix).nonZeros()));
@@ -172,27 +191,39 @@ void compare(const std::string& text, const Mesh& mesh) {
     // Rayleigh damping is added in another order
     EXPECT_EQ(other.damping.nonZeros(), 0);
     EXPECT_GT(one.damping.nonZeros(), 0);
-    EXPECT_LE(difference(gathered(distributed_terms(other, 0, 1, 0), n), one.damping), 1e-15);
+    EXPECT_LE(difference(gathered(distributed_terms(other, 0, 1, 0), to_serial), one.damping), 1e-15);
     // a sum with a part that stands on rank 0, as it is multiplied and as it is solved with
-    Sparse extra(n, n);
-    extra.insert(3, 3) = 2 * one.stiffness.coeff(3, 3);
-    extra.insert(3, n - 1) = 0.1 * one.stiffness.coeff(3, 3);
-    extra.insert(n - 1, n - 1) = 3 * one.stiffness.coeff(3, 3);
+    const auto extra = [&](int i, int j) {
+      Sparse matrix(n, n);
+      matrix.insert(i, i) = 2 * one.stiffness.coeff(3, 3);
+      matrix.insert(std::min(i, j), std::max(i, j)) = 0.1 * one.stiffness.coeff(3, 3);
+      matrix.insert(j, j) = 3 * one.stiffness.coeff(3, 3);
+      return matrix;
+    };
+    const int last = static_cast<int>(n) - 1;
     OwnedSum sum = matrix_sum(other, 1, 50, 4e6);
-    sum.here += extra;
+    sum.here += extra(to_ranks[3], to_ranks[last]);
     const OwnedSum same = matrix_sum(one, 1, 50, 4e6);
-    const Sparse whole = same.here + extra;
+    const Sparse whole = same.here + extra(3, last);
     const Vector x = Vector::LinSpaced(n, -1, 2), product = whole.selfadjointView<upper_triangle>() * x;
-    EXPECT_LE((SymmetricSum(sum).times(x) - product).norm(), 1e-14 * product.norm());
-    EXPECT_LE((SymmetricSum(sum).diagonal() - whole.diagonal()).norm(), 1e-14 * whole.diagonal().norm());
+    EXPECT_LE((renumbered(to_serial, SymmetricSum(sum).times(renumbered(to_ranks, x))) - product).norm(), 1e-14 * product.norm());
+    EXPECT_LE((renumbered(to_serial, SymmetricSum(sum).diagonal()) - whole.diagonal()).norm(), 1e-14 * whole.diagonal().norm());
     const Factorisation made = factorise(*spread.plan.solver, sum);
     ASSERT_NE(made.factor, nullptr) << made.why;
     Matrix found;
-    made.factor->solve(product, found);
-    EXPECT_LE((found.col(0) - x).norm(), 1e-9 * x.norm());
-    // and back
-    make_whole(spread.model);
+    made.factor->solve(renumbered(to_ranks, product), found);
+    EXPECT_LE((renumbered(to_serial, found.col(0)) - x).norm(), 1e-9 * x.norm());
+    // and back, with the numbers of the serial program
+    Vector also = renumbered(to_ranks, x);
+    make_whole(spread.model, {&also});
+    EXPECT_TRUE(also == x);
     EXPECT_EQ(spread.model.distributed, nullptr);
+    EXPECT_EQ(spread.model.kept, one.kept);
+    EXPECT_TRUE(Matrix(spread.model.expansion) == Matrix(one.expansion));
+    ASSERT_EQ(spread.model.time_loads.size(), one.time_loads.size());
+    for (std::size_t k = 0; k < one.time_loads.size(); ++k) EXPECT_TRUE(spread.model.time_loads[k].shape == one.time_loads[k].shape);
+    for (std::size_t k = 0; k < one.interfaces.size(); ++k)
+      EXPECT_TRUE(Matrix(spread.model.interfaces[k].b) == Matrix(one.interfaces[k].b));
     for (const auto matrix : {&Model::stiffness, &Model::mass, &Model::damping})
       EXPECT_TRUE(Matrix(spread.model.*matrix) == Matrix(one.*matrix));
   }
@@ -204,6 +235,10 @@ TEST(Distribution, RowsOfTiesRigidBodiesBeamsDashpotsAndAbsorbingFaces) {
 
 TEST(Distribution, RowsOfACutInterfaceInSpace) {
   compare(cut(), box(uniform_lines(-4, 4, 8), uniform_lines(-2, 2, 4), uniform_lines(0, 6, 6)));
+}
+
+TEST(Distribution, RowsOfNodesInArbitraryOrder) {
+  compare(cut(), shuffled(box(uniform_lines(-4, 4, 8), uniform_lines(-2, 2, 4), uniform_lines(0, 6, 6)), 5));
 }
 
 /// Two layers, of cells of two sizes, on a base that is held; a raft and a block on them, of too few cells for a class; a side that rolls.
@@ -268,6 +303,7 @@ void compare_by_cells(const std::string& text, const Mesh& mesh, double share) {
   ASSERT_EQ(other.free(), n);
   ASSERT_NE(other.distributed, nullptr);
   ASSERT_NE(other.distributed->cells, nullptr);
+  const std::vector<int> to_serial = serial_numbers(other), to_ranks = inverse(to_serial);
   struct Of {
     double k, c, m;
   };
@@ -275,12 +311,13 @@ void compare_by_cells(const std::string& text, const Mesh& mesh, double share) {
     const Sparse whole = k * one.stiffness + c * one.damping + m * one.mass;
     const std::vector<DistributedTerm> terms = distributed_terms(other, k, c, m);
     Vector diagonal = Vector::Zero(n), size(n), x(n), product(n);
-    for (const DistributedTerm& term : terms) diagonal += term.factor * term.matrix->diagonal();
+    for (const DistributedTerm& term : terms) diagonal += term.factor * renumbered(to_serial, term.matrix->diagonal());
     EXPECT_LE((diagonal - whole.diagonal()).cwiseAbs().maxCoeff(), 1e-13 * whole.diagonal().maxCoeff());
     for (Index i = 0; i < n; ++i) size[i] = 1 / std::sqrt(std::max(diagonal[i], 1e-30));  // no unit is larger than another
     for (int trial = 1; trial <= 3; ++trial) {
       for (Index i = 0; i < n; ++i) x[i] = size[i] * std::sin(1.618 * trial * static_cast<double>(i + 1) * static_cast<double>(i + 1));
-      terms.front().matrix->multiply(terms, x, product);
+      terms.front().matrix->multiply(terms, renumbered(to_ranks, x), product);
+      renumber(to_serial, product);
       EXPECT_LE((product - whole * x).cwiseProduct(size).cwiseAbs().maxCoeff(), 1e-13) << k << " " << c << " " << m;
     }
   }
@@ -295,8 +332,8 @@ void compare_by_cells(const std::string& text, const Mesh& mesh, double share) {
   ASSERT_NE(made.factor, nullptr) << made.why;
   const Vector x = Vector::LinSpaced(n, -1, 2), load = whole * x;
   Matrix found;
-  made.factor->solve(load, found);
-  EXPECT_LE((found.col(0) - x).norm(), 1e-9 * x.norm());
+  made.factor->solve(renumbered(to_ranks, load), found);
+  EXPECT_LE((renumbered(to_serial, found.col(0)) - x).norm(), 1e-9 * x.norm());
 }
 
 TEST(Distribution, EqualCellsAsTheirSum) {
@@ -305,6 +342,10 @@ TEST(Distribution, EqualCellsAsTheirSum) {
 
 TEST(Distribution, EqualCellsAmongTiesRigidBodiesBeamsAndDashpots) {
   compare_by_cells(tied, {}, 0.5);
+}
+
+TEST(Distribution, EqualCellsOfNodesInArbitraryOrder) {
+  compare_by_cells(cut(), shuffled(box(uniform_lines(-4, 4, 8), uniform_lines(-2, 2, 4), uniform_lines(0, 6, 6)), 5), 0.9);
 }
 
 TEST(Distribution, EqualCellsBesideCutOnes) {

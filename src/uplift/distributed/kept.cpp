@@ -49,31 +49,42 @@ void KeptMatrix::multiply(std::span<const DistributedTerm> sum, const Vector& x,
 }
 
 Vector KeptMatrix::diagonal() const {
-  return Ranks::all().diagonal(number_, rows_);
+  return Ranks::all().diagonal(number_, firsts_.back());
 }
 
 KeptCells::~KeptCells() {
   Ranks::all().drop(number_);
 }
 
-std::shared_ptr<const DistributedMatrix> HomeOnRanks::keep(Index rows, const MakeColumns& make, const EqualCellPart& part) const {
-  const auto* cells = dynamic_cast<const KeptCells*>(part.cells.get());
-  Ranks::Kept kept = Ranks::all().keep(rows, make, {cells != nullptr ? cells->number() : 0, &part.local});
-  return std::make_shared<const KeptMatrix>(kept.matrix, rows, std::move(kept.entries));
+int HomeOnRanks::processes() const {
+  return Ranks::all().count();
 }
 
-std::shared_ptr<const DistributedCells> HomeOnRanks::keep_cells(Index rows, const std::vector<EqualCells>& classes) const {
+std::vector<int> HomeOnRanks::divide(const CoupledVertices& graph) const {
+  return Ranks::all().divide(graph);
+}
+
+std::shared_ptr<const DistributedMatrix> HomeOnRanks::keep(const std::vector<int>& firsts, const MakeColumns& make,
+                                                           const EqualCellPart& part) const {
+  const auto* cells = dynamic_cast<const KeptCells*>(part.cells.get());
+  Ranks::Kept kept = Ranks::all().keep(firsts, make, {cells != nullptr ? cells->number() : 0, &part.local});
+  return std::make_shared<const KeptMatrix>(kept.matrix, firsts, std::move(kept.entries));
+}
+
+std::shared_ptr<const DistributedCells> HomeOnRanks::keep_cells(const std::vector<int>& firsts,
+                                                                const std::vector<EqualCells>& classes) const {
   if (classes.empty()) return nullptr;
-  Ranks::KeptCells kept = Ranks::all().keep_cells(rows, classes);
+  Ranks::KeptCells kept = Ranks::all().keep_cells(firsts, classes);
   return std::make_shared<const KeptCells>(kept.cells, std::move(kept.bytes));
 }
 
-Ranks::KeptCells Ranks::keep_cells(std::int64_t rows, const std::vector<EqualCells>& classes) {
+Ranks::KeptCells Ranks::keep_cells(const std::vector<int>& firsts, const std::vector<EqualCells>& classes) {
   const std::lock_guard lock(one_at_a_time_);
   HalfWay half_way(half_way_);
-  const Order order{What::keep_cells, ++made_, rows, 0, 0, std::ssize(classes)};
+  const Shares shares(firsts);
+  const Order order{What::keep_cells, ++made_, shares.rows(), 0, 0, std::ssize(classes)};
   tell(order);
-  KeptCells kept = keep_cells_together(order, &classes);
+  KeptCells kept = keep_cells_together(order, &shares, &classes);
   half_way.done();
   return kept;
 }
@@ -96,9 +107,9 @@ EqualCells cells_at(const EqualCells& all, int first, int end) {
 
 }  // namespace
 
-/// `classes`: on rank 0.
-Ranks::KeptCells Ranks::keep_cells_together(const Order& order, const std::vector<EqualCells>* classes) {
-  const Shares shares(static_cast<PetscInt>(order.rows), count_);
+/// `given` and `classes`: on rank 0.
+Ranks::KeptCells Ranks::keep_cells_together(const Order& order, const Shares* given, const std::vector<EqualCells>* classes) {
+  const Shares shares = spread_shares(given);
   std::vector<EqualCells> mine(static_cast<std::size_t>(order.terms));
   for (std::size_t k = 0; k < mine.size(); ++k) {
     if (classes == nullptr) {
@@ -125,24 +136,34 @@ Ranks::KeptCells Ranks::keep_cells_together(const Order& order, const std::vecto
   return kept;
 }
 
-Ranks::Kept Ranks::keep(std::int64_t rows, const MatrixHome::MakeColumns& make, const PartOfCells& part) {
+Ranks::Kept Ranks::keep(const std::vector<int>& firsts, const MatrixHome::MakeColumns& make, const PartOfCells& part) {
   const std::lock_guard lock(one_at_a_time_);
   HalfWay half_way(half_way_);
-  const Order order{What::keep, ++made_, rows, 0, 0, 0, 0, part.cells};
+  const Shares shares(firsts);
+  const Order order{What::keep, ++made_, shares.rows(), 0, 0, 0, 0, part.cells};
   tell(order);
-  Kept kept = keep_together(order, &make, part.local);
+  Kept kept = keep_together(order, &shares, &make, part.local);
   half_way.done();
   return kept;
 }
 
-/// `make` and `local`: on rank 0.
-Ranks::Kept Ranks::keep_together(const Order& order, const MatrixHome::MakeColumns* make, const std::vector<Matrix>* local) {
+/// The same on all ranks; `shares`: on rank 0.
+Shares Ranks::spread_shares(const Shares* shares) const {
+  std::vector<PetscInt> firsts = shares != nullptr ? shares->firsts() : std::vector<PetscInt>(static_cast<std::size_t>(count_) + 1);
+  MPI_Bcast(firsts.data(), count_ + 1, MPI_INT, 0, ranks_);
+  return Shares(std::move(firsts));
+}
+
+/// `given`, `make` and `local`: on rank 0.
+Ranks::Kept Ranks::keep_together(const Order& order, const Shares* given, const MatrixHome::MakeColumns* make,
+                                 const std::vector<Matrix>* local) {
   KeptRows& mine = kept_[order.system];
+  mine.shares = spread_shares(given);
   if (order.cells != 0) {
     mine.cells = cells_.at(order.cells);
     mine.local = spread_local(mine.cells->classes(), local);
   }
-  spread_columns(order, make).swap(mine.columns);
+  spread_columns(mine.shares, make).swap(mine.columns);
   Kept kept{order.system, std::vector<double>(static_cast<std::size_t>(count_))};
   const auto entries = static_cast<double>(mine.columns.nonZeros());
   MPI_Gather(&entries, 1, MPI_DOUBLE, kept.entries.data(), 1, MPI_DOUBLE, 0, ranks_);
@@ -161,9 +182,8 @@ std::vector<Matrix> Ranks::spread_local(std::size_t classes, const std::vector<M
 }
 
 /// `make`: on rank 0, whose own rows are made last.
-Sparse Ranks::spread_columns(const Order& order, const MatrixHome::MakeColumns* make) const {
-  const Shares shares(static_cast<PetscInt>(order.rows), count_);
-  Sparse mine(order.rows, shares.count(rank_));
+Sparse Ranks::spread_columns(const Shares& shares, const MatrixHome::MakeColumns* make) const {
+  Sparse mine(shares.rows(), shares.count(rank_));
   if (make == nullptr) {
     std::int64_t entries = 0;
     receive(&entries, 1, MPI_INT64_T, ranks_);
@@ -208,12 +228,11 @@ Vector Ranks::diagonal(std::int64_t matrix, std::int64_t rows) {
 
 /// `diagonal`: on rank 0.
 void Ranks::diagonal_together(const Order& order, Vector* diagonal) const {
-  const Shares shares(static_cast<PetscInt>(order.rows), count_);
   const KeptRows& kept = kept_.at(order.system);
-  Vector own(shares.count(rank_));
-  for (Index i = 0; i < own.size(); ++i) own[i] = kept.columns.coeff(shares.first(rank_) + i, i);
+  Vector own(kept.columns.cols());
+  for (Index i = 0; i < own.size(); ++i) own[i] = kept.columns.coeff(kept.shares.first(rank_) + i, i);
   if (kept.cells != nullptr) own += kept.cells->diagonal(kept.local);
-  gather(own, order.rows, diagonal);
+  gather(own, kept.shares, diagonal);
 }
 
 void Ranks::multiply(std::span<const DistributedTerm> sum, const Vector& x, Vector& y) {
@@ -226,8 +245,8 @@ void Ranks::multiply(std::span<const DistributedTerm> sum, const Vector& x, Vect
 }
 
 void Ranks::multiply_together(const Order& order, std::span<const DistributedTerm> sum, const Vector* x, Vector* y) const {
-  const Shares shares(static_cast<PetscInt>(order.rows), count_);
   const std::vector<KeptTerm> terms = spread_terms(order, sum);
+  const Shares& shares = terms.front().matrix.shares;
   Vector received;
   const Vector& given = spread_vector(order.rows, x, received);
   Vector product = Vector::Zero(shares.count(rank_));
@@ -239,7 +258,7 @@ void Ranks::multiply_together(const Order& order, std::span<const DistributedTer
     cells.add_product(sum_of_cells.local, from.data(), to.data());
     product += to.head(cells.own());
   }
-  gather(product, order.rows, y);
+  gather(product, shares, y);
 }
 
 /// `sum`: on rank 0.
@@ -285,14 +304,13 @@ const Vector& Ranks::spread_vector(std::int64_t size, const Vector* vector, Vect
 }
 
 /// The rank's rows of S (sum of terms) S + also.
-LocalRows Ranks::rows_of_sum(const std::vector<KeptTerm>& terms, const Vector& scale, const LocalRows& also) const {
-  const Shares shares(static_cast<PetscInt>(scale.size()), count_);
-  const PetscInt first = shares.first(rank_), count = shares.count(rank_);
+LocalRows Ranks::rows_of_sum(const Sum& given, const Vector& scale, const LocalRows& also) const {
+  const PetscInt first = given.shares.first(rank_), count = given.shares.count(rank_);
   std::vector<Cursor> row;
   LocalRows sum;
   const auto each_entry = [&](PetscInt local, const auto& take) {
     row.clear();
-    for (const KeptTerm& term : terms) {
+    for (const KeptTerm& term : given.terms) {
       const Sparse& columns = term.matrix.columns;
       const int *start = columns.outerIndexPtr() + local, *column = columns.innerIndexPtr();
       row.push_back({column + start[0], column + start[1], columns.valuePtr() + start[0], term.factor});

@@ -4,25 +4,27 @@
 #include <utility>
 #include <vector>
 
-#include "uplift/math/symmetric_sum.h"
+#include "uplift/model/matrix_home.h"
 
 namespace uplift {
 
 /// A matrix whose rows the ranks of the job keep (Ranks).
 class KeptMatrix final : public DistributedMatrix {
  public:
-  KeptMatrix(std::int64_t number, Index rows, std::vector<double> entries) : number_(number), rows_(rows), entries_(std::move(entries)) {}
+  KeptMatrix(std::int64_t number, std::vector<int> firsts, std::vector<double> entries)
+      : number_(number), firsts_(std::move(firsts)), entries_(std::move(entries)) {}
   ~KeptMatrix() override;
   KeptMatrix(const KeptMatrix&) = delete;
   KeptMatrix& operator=(const KeptMatrix&) = delete;
   void multiply(std::span<const DistributedTerm> sum, const Vector& x, Vector& y) const override;
   Vector diagonal() const override;
   const std::vector<double>& entries() const override { return entries_; }
+  const std::vector<int>& firsts() const override { return firsts_; }
   std::int64_t number() const { return number_; }
 
  private:
   std::int64_t number_;
-  Index rows_;
+  std::vector<int> firsts_;
   std::vector<double> entries_;
 };
 
@@ -45,9 +47,12 @@ class KeptCells final : public DistributedCells {
 class HomeOnRanks final : public MatrixHome {
  public:
   explicit HomeOnRanks(bool takes_cells) : takes_cells_(takes_cells) {}
+  int processes() const override;
+  std::vector<int> divide(const CoupledVertices& graph) const override;
   bool takes_cells() const override { return takes_cells_; }
-  std::shared_ptr<const DistributedCells> keep_cells(Index rows, const std::vector<EqualCells>& classes) const override;
-  std::shared_ptr<const DistributedMatrix> keep(Index rows, const MakeColumns& make, const EqualCellPart& part) const override;
+  std::shared_ptr<const DistributedCells> keep_cells(const std::vector<int>& firsts, const std::vector<EqualCells>& classes) const override;
+  std::shared_ptr<const DistributedMatrix> keep(const std::vector<int>& firsts, const MakeColumns& make,
+                                                const EqualCellPart& part) const override;
 
  private:
   bool takes_cells_;

@@ -1,6 +1,7 @@
 #include "uplift/distributed/petsc.h"
 
 #include <csignal>
+#include <cstdlib>
 #include <utility>
 
 #include "uplift/cli/console.h"
@@ -30,6 +31,7 @@ PetscErrorCode keep_error(MPI_Comm, int, const char*, const char*, PetscErrorCod
 
 Petsc::Petsc() {
   prepare_blas();
+  setenv("SCOTCH_PTHREAD_NUMBER", "1", 1);  // with several threads PTScotch finds another partition each time
   // -skip_petscrc: results depend on the case file alone; signals are those of the program
   char name[] = "uplift-mpi", plain[] = "-skip_petscrc", own_signals[] = "-no_signal_handler";
   char* words[] = {name, plain, own_signals, nullptr};

@@ -88,11 +88,14 @@ void Ranks::serve() {
       case What::refuse:
         refuse_together(order, {});
         break;
+      case What::divide:
+        divide_together(order, nullptr);
+        break;
       case What::keep:
-        keep_together(order, nullptr, nullptr);
+        keep_together(order, nullptr, nullptr, nullptr);
         break;
       case What::keep_cells:
-        keep_cells_together(order, nullptr);
+        keep_cells_together(order, nullptr, nullptr);
         break;
       case What::drop:
         kept_.erase(order.system);
@@ -132,16 +135,17 @@ Ranks::Made Ranks::make_together(const Order& order, const Scaled* matrix, std::
   Made made{order.system, {}, 0, {}};
   const SolverOptions given(spread_text(order.letters, std::move(options)));
   auto system = std::make_unique<System>(ranks_);
-  const std::vector<int> node = spread_nodes(order, matrix);
-  made.outcome = set_sum(*system, order, matrix, node);
+  const Sum sum = spread_sum(order, matrix);
+  const std::vector<int> node = spread_nodes(order, sum.shares, matrix);
+  made.outcome = set_sum(*system, sum, matrix, node);
   if (made.outcome.ok() && order.columns > 0)
-    made.outcome = system->set_motions(spread_motions(order, matrix), static_cast<PetscInt>(order.columns));
+    made.outcome = system->set_motions(spread_motions(order, sum.shares, matrix), static_cast<PetscInt>(order.columns));
   system->set_stiff(spread_stiff(matrix));
   if (made.outcome.ok()) made.outcome = system->prepare(given);
   made.nonzeros = system->nonzeros();
   made.remark = system->remark();
-  std::vector<double> scale = own_rows(order.rows, matrix != nullptr ? matrix->scale.data() : nullptr);
-  if (made.outcome.ok()) systems_[order.system] = {std::move(system), std::move(scale)};
+  std::vector<double> scale = own_rows(sum.shares, matrix != nullptr ? matrix->scale.data() : nullptr);
+  if (made.outcome.ok()) systems_[order.system] = {std::move(system), std::move(scale), sum.shares};
   return made;
 }
 
@@ -162,7 +166,7 @@ Ranks::Forecast Ranks::foretell_together(const Order& order, const Scaled* matri
   Forecast forecast;
   const SolverOptions given(spread_text(order.letters, std::move(options)));
   System system(ranks_);
-  forecast.outcome = set_sum(system, order, matrix, {});
+  forecast.outcome = set_sum(system, spread_sum(order, matrix), matrix, {});
   system.set_stiff(spread_stiff(matrix));
   if (forecast.outcome.ok()) forecast.outcome = system.foretell(given, forecast.mine);
   MPI_Comm machine = MPI_COMM_NULL;
@@ -195,17 +199,17 @@ SystemOutcome Ranks::solve(std::int64_t system, const Matrix& b, Matrix& x, doub
 
 SystemOutcome Ranks::solve_together(const Order& order, const double* b, double* x) {
   const auto columns = static_cast<PetscInt>(order.columns);
-  const Parts of = parts(order.rows);
-  const int local = of.counts[static_cast<std::size_t>(rank_)];
-  const auto& [asked, scale] = systems_.at(order.system);
+  const auto& [asked, scale, shares] = systems_.at(order.system);
+  const int local = shares.count(rank_);
+  const std::vector<int> counts = shares.counts();
   std::vector<double> given(static_cast<std::size_t>(local) * static_cast<std::size_t>(columns)), solved(given.size());
   const auto scale_column = [&, factors = scale.data()](double* column) {
     for (int i = 0; i < local; ++i) column[i] *= factors[i];
   };
   for (PetscInt c = 0; c < columns; ++c) {
     double* column = given.data() + static_cast<std::ptrdiff_t>(local) * c;
-    MPI_Scatterv(b == nullptr ? nullptr : b + order.rows * c, of.counts.data(), of.firsts.data(), MPI_DOUBLE, column, local, MPI_DOUBLE, 0,
-                 ranks_);
+    MPI_Scatterv(b == nullptr ? nullptr : b + order.rows * c, counts.data(), shares.firsts().data(), MPI_DOUBLE, column, local, MPI_DOUBLE,
+                 0, ranks_);
     scale_column(column);
   }
   SystemOutcome outcome = asked->solve(given.data(), solved.data(), columns, order.residual);
@@ -213,8 +217,8 @@ SystemOutcome Ranks::solve_together(const Order& order, const double* b, double*
   for (PetscInt c = 0; c < columns; ++c) {
     double* column = solved.data() + static_cast<std::ptrdiff_t>(local) * c;
     scale_column(column);
-    MPI_Gatherv(column, local, MPI_DOUBLE, x == nullptr ? nullptr : x + order.rows * c, of.counts.data(), of.firsts.data(), MPI_DOUBLE, 0,
-                ranks_);
+    MPI_Gatherv(column, local, MPI_DOUBLE, x == nullptr ? nullptr : x + order.rows * c, counts.data(), shares.firsts().data(), MPI_DOUBLE,
+                0, ranks_);
   }
   return outcome;
 }
@@ -236,14 +240,13 @@ SystemOutcome Ranks::flexibility_together(const Order& order, std::vector<int> c
   constexpr std::int64_t most_numbers = 1 << 22;  // of the loads, on each rank
   chosen.resize(static_cast<std::size_t>(order.columns));
   MPI_Bcast(chosen.data(), static_cast<int>(order.columns), MPI_INT, 0, ranks_);
-  const Shares shares(static_cast<PetscInt>(order.rows), count_);
+  const auto& [asked, scale, shares] = systems_.at(order.system);
   const std::int64_t first_row = shares.first(rank_), local = shares.count(rank_), count = order.columns;
   const auto each_of_mine = [&](std::int64_t begin, std::int64_t end, const auto& take) {  // number of the chosen one, row of this rank
     for (std::int64_t k = begin; k < end; ++k)
       if (const std::int64_t row = chosen[static_cast<std::size_t>(k)] - first_row; row >= 0 && row < local) take(k, row);
   };
-  const std::int64_t block = std::clamp<std::int64_t>(most_numbers / (shares.count(0) + 1), 1, most_columns);
-  const auto& [asked, scale] = systems_.at(order.system);
+  const std::int64_t block = std::clamp<std::int64_t>(most_numbers / (std::ranges::max(shares.counts()) + 1), 1, most_columns);
   for (std::int64_t first = 0; first < count; first += block) {
     const std::int64_t columns = std::min(block, count - first);
     std::vector<double> given(static_cast<std::size_t>(local * columns)), solved(given.size());
@@ -265,37 +268,27 @@ SystemOutcome Ranks::flexibility_together(const Order& order, std::vector<int> c
   return {};
 }
 
-Ranks::Parts Ranks::parts(std::int64_t rows) const {
-  const Shares shares(static_cast<PetscInt>(rows), count_);
-  Parts made;
-  for (int rank = 0; rank < count_; ++rank) made.counts.push_back(shares.count(rank)), made.firsts.push_back(shares.first(rank));
-  return made;
-}
-
 /// The rank's rows of a vector on rank 0.
-std::vector<double> Ranks::own_rows(std::int64_t rows, const double* vector) const {
-  const Parts of = parts(rows);
-  const int count = of.counts[static_cast<std::size_t>(rank_)];
+std::vector<double> Ranks::own_rows(const Shares& shares, const double* vector) const {
+  const int count = shares.count(rank_);
   std::vector<double> own(static_cast<std::size_t>(count));
-  MPI_Scatterv(vector, of.counts.data(), of.firsts.data(), MPI_DOUBLE, own.data(), count, MPI_DOUBLE, 0, ranks_);
+  MPI_Scatterv(vector, shares.counts().data(), shares.firsts().data(), MPI_DOUBLE, own.data(), count, MPI_DOUBLE, 0, ranks_);
   return own;
 }
 
 /// The whole vector; `all`: on rank 0.
-void Ranks::gather(const Vector& own, std::int64_t rows, Vector* all) const {
-  const Parts of = parts(rows);
-  MPI_Gatherv(own.data(), static_cast<int>(own.size()), MPI_DOUBLE, all == nullptr ? nullptr : all->data(), of.counts.data(),
-              of.firsts.data(), MPI_DOUBLE, 0, ranks_);
+void Ranks::gather(const Vector& own, const Shares& shares, Vector* all) const {
+  MPI_Gatherv(own.data(), static_cast<int>(own.size()), MPI_DOUBLE, all == nullptr ? nullptr : all->data(), shares.counts().data(),
+              shares.firsts().data(), MPI_DOUBLE, 0, ranks_);
 }
 
 /// The node of each of the rank's rows; empty without motions.
-std::vector<int> Ranks::spread_nodes(const Order& order, const Scaled* matrix) const {
+std::vector<int> Ranks::spread_nodes(const Order& order, const Shares& shares, const Scaled* matrix) const {
   if (order.columns == 0) return {};
-  const Parts of = parts(order.rows);
-  const int count = of.counts[static_cast<std::size_t>(rank_)];
+  const int count = shares.count(rank_);
   std::vector<int> node(static_cast<std::size_t>(count));
-  MPI_Scatterv(matrix == nullptr ? nullptr : matrix->motions.node.data(), of.counts.data(), of.firsts.data(), MPI_INT, node.data(), count,
-               MPI_INT, 0, ranks_);
+  MPI_Scatterv(matrix == nullptr ? nullptr : matrix->motions.node.data(), shares.counts().data(), shares.firsts().data(), MPI_INT,
+               node.data(), count, MPI_INT, 0, ranks_);
   return node;
 }
 
@@ -310,12 +303,12 @@ std::vector<PetscInt> Ranks::spread_stiff(const Scaled* matrix) const {
 }
 
 /// The rank's rows of the motions of S A S, which are S^-1 times those of A, one column after another.
-std::vector<double> Ranks::spread_motions(const Order& order, const Scaled* matrix) const {
+std::vector<double> Ranks::spread_motions(const Order& order, const Shares& shares, const Scaled* matrix) const {
   std::vector<double> rows;
   Vector motion;
   for (std::int64_t c = 0; c < order.columns; ++c) {
     if (matrix != nullptr) motion = matrix->motions.motions.col(c).cwiseQuotient(matrix->scale);
-    const std::vector<double> own = own_rows(order.rows, motion.data());
+    const std::vector<double> own = own_rows(shares, motion.data());
     rows.insert(rows.end(), own.begin(), own.end());
   }
   return rows;
@@ -389,8 +382,7 @@ LocalRows Ranks::rows_of(const Scaled& matrix, Index first, Index count) {
 }
 
 /// `matrix`: on rank 0, which makes the rows of one rank after another, its own ones last.
-LocalRows Ranks::spread_rows(PetscInt rows, const Scaled* matrix) const {
-  const Shares shares(rows, count_);
+LocalRows Ranks::spread_rows(const Shares& shares, const Scaled* matrix) const {
   if (matrix == nullptr) {
     LocalRows local;
     std::int64_t entries = 0;
@@ -413,19 +405,26 @@ LocalRows Ranks::spread_rows(PetscInt rows, const Scaled* matrix) const {
   return rows_of(*matrix, 0, shares.count(0));
 }
 
+Ranks::Sum Ranks::spread_sum(const Order& order, const Scaled* matrix) const {
+  Sum sum{{}, Shares(static_cast<PetscInt>(order.rows), count_)};
+  if (order.terms == 0) return sum;
+  sum.terms = spread_terms(order, matrix != nullptr ? matrix->matrix.there : std::span<const DistributedTerm>());
+  sum.shares = sum.terms.front().matrix.shares;
+  return sum;
+}
+
 /// A sum, of which `matrix` is on rank 0: the rank's rows of its entries, and its cells.
-SystemOutcome Ranks::set_sum(System& system, const Order& order, const Scaled* matrix, const std::vector<int>& node) const {
-  const auto rows = static_cast<PetscInt>(order.rows);
-  if (order.terms == 0) return system.set(spread_rows(rows, matrix), rows, node);
-  const std::vector<KeptTerm> terms = spread_terms(order, matrix != nullptr ? matrix->matrix.there : std::span<const DistributedTerm>());
+SystemOutcome Ranks::set_sum(System& system, const Sum& sum, const Scaled* matrix, const std::vector<int>& node) const {
+  const PetscInt rows = sum.shares.rows();
+  if (sum.terms.empty()) return system.set(spread_rows(sum.shares, matrix), rows, node);
   Vector received;
-  const Vector& scale = spread_vector(order.rows, matrix != nullptr ? &matrix->scale : nullptr, received);
-  ScaledCells cells = cells_of_sum(terms);
+  const Vector& scale = spread_vector(rows, matrix != nullptr ? &matrix->scale : nullptr, received);
+  ScaledCells cells = cells_of_sum(sum.terms);
   if (cells.cells != nullptr) {
     const double* first = scale.data() + cells.cells->first();
     cells.scale.assign(first, first + cells.cells->own());
   }
-  return system.set(rows_of_sum(terms, scale, spread_rows(rows, matrix)), rows, node, std::move(cells));
+  return system.set(rows_of_sum(sum, scale, spread_rows(sum.shares, matrix)), rows, node, std::move(cells));
 }
 
 void Ranks::release(std::int64_t system) {

@@ -52,13 +52,16 @@ class Ranks {
     std::int64_t cells = 0;  // their number; 0: there are none
     const std::vector<Matrix>* local = nullptr;
   };
-  Kept keep(std::int64_t rows, const MatrixHome::MakeColumns& make, const PartOfCells& part);
+  Kept keep(const std::vector<int>& firsts, const MatrixHome::MakeColumns& make, const PartOfCells& part);
   /// Every rank keeps the cells that reach its rows; see MatrixHome::keep_cells.
   struct KeptCells {
     std::int64_t cells = 0;     // their number
     std::vector<double> bytes;  // of each rank
   };
-  KeptCells keep_cells(std::int64_t rows, const std::vector<EqualCells>& classes);
+  KeptCells keep_cells(const std::vector<int>& firsts, const std::vector<EqualCells>& classes);
+  /// See MatrixHome::divide.
+  std::vector<int> divide(const CoupledVertices& graph);
+  int count() const { return count_; }
   /// A matrix or cells.
   void drop(std::int64_t kept);
   /// y = sum of factor * A x of kept matrices.
@@ -87,11 +90,25 @@ class Ranks {
   void serve();
 
  private:
-  enum class What : std::int64_t { make, foretell, keep, keep_cells, drop, multiply, diagonal, solve, flexibility, refuse, release, end };
+  enum class What : std::int64_t {
+    make,
+    foretell,
+    divide,
+    keep,
+    keep_cells,
+    drop,
+    multiply,
+    diagonal,
+    solve,
+    flexibility,
+    refuse,
+    release,
+    end
+  };
   struct Order {
     What what = What::end;
-    // system: or a kept matrix, or cells; columns: of the loads, the motions or the flexibility; letters: of the options; terms: kept
-    // matrices, or classes of cells
+    // rows: or vertices; system: or a kept matrix, or cells; columns: of the loads, the motions or the flexibility; letters: of the
+    // options; terms: kept matrices, or classes of cells
     std::int64_t system = 0, rows = 0, columns = 0, letters = 0, terms = 0;
     double residual = 0;
     std::int64_t cells = 0;  // that add to a kept matrix
@@ -106,6 +123,7 @@ class Ranks {
     const std::vector<int>& stiff;
   };
   struct KeptRows {
+    Shares shares;
     Sparse columns;                          // rows x local: the rank's rows, as columns
     std::shared_ptr<const RankCells> cells;  // null: none
     std::vector<Matrix> local;               // of each class of cells
@@ -116,31 +134,34 @@ class Ranks {
   };
   Made make_together(const Order& order, const Scaled* matrix, std::string options);
   Forecast foretell_together(const Order& order, const Scaled* matrix, std::string options);
-  Kept keep_together(const Order& order, const MatrixHome::MakeColumns* make, const std::vector<Matrix>* local);
-  Sparse spread_columns(const Order& order, const MatrixHome::MakeColumns* make) const;
-  KeptCells keep_cells_together(const Order& order, const std::vector<EqualCells>* classes);
+  Kept keep_together(const Order& order, const Shares* given, const MatrixHome::MakeColumns* make, const std::vector<Matrix>* local);
+  Sparse spread_columns(const Shares& shares, const MatrixHome::MakeColumns* make) const;
+  std::vector<int> divide_together(const Order& order, const CoupledVertices* graph) const;
+  Shares spread_shares(const Shares* shares) const;
+  KeptCells keep_cells_together(const Order& order, const Shares* given, const std::vector<EqualCells>* classes);
   std::vector<Matrix> spread_local(std::size_t classes, const std::vector<Matrix>* local) const;
   void diagonal_together(const Order& order, Vector* diagonal) const;
   void multiply_together(const Order& order, std::span<const DistributedTerm> sum, const Vector* x, Vector* y) const;
   SystemOutcome solve_together(const Order& order, const double* b, double* x);
   SystemOutcome flexibility_together(const Order& order, std::vector<int> chosen, Matrix* entries);
   std::string refuse_together(const Order& order, std::string options);
-  /// Numbers and beginnings of the rows of all ranks.
-  struct Parts {
-    std::vector<int> counts, firsts;
+  std::vector<double> own_rows(const Shares& shares, const double* vector) const;
+  void gather(const Vector& own, const Shares& shares, Vector* all) const;
+  std::vector<int> spread_nodes(const Order& order, const Shares& shares, const Scaled* matrix) const;
+  std::vector<double> spread_motions(const Order& order, const Shares& shares, const Scaled* matrix) const;
+  /// The terms of a sum; of one without them every rank has the same number of rows.
+  struct Sum {
+    std::vector<KeptTerm> terms;
+    Shares shares;
   };
-  Parts parts(std::int64_t rows) const;
-  std::vector<double> own_rows(std::int64_t rows, const double* vector) const;
-  void gather(const Vector& own, std::int64_t rows, Vector* all) const;
-  std::vector<int> spread_nodes(const Order& order, const Scaled* matrix) const;
   std::vector<PetscInt> spread_stiff(const Scaled* matrix) const;
-  std::vector<double> spread_motions(const Order& order, const Scaled* matrix) const;
-  SystemOutcome set_sum(System& system, const Order& order, const Scaled* matrix, const std::vector<int>& node) const;
-  LocalRows spread_rows(PetscInt rows, const Scaled* matrix) const;
+  Sum spread_sum(const Order& order, const Scaled* matrix) const;
+  SystemOutcome set_sum(System& system, const Sum& sum, const Scaled* matrix, const std::vector<int>& node) const;
+  LocalRows spread_rows(const Shares& shares, const Scaled* matrix) const;
   std::vector<KeptTerm> spread_terms(const Order& order, std::span<const DistributedTerm> sum) const;
   const Vector& spread_vector(std::int64_t size, const Vector* vector, Vector& received) const;
   static ScaledCells cells_of_sum(const std::vector<KeptTerm>& terms);
-  LocalRows rows_of_sum(const std::vector<KeptTerm>& terms, const Vector& scale, const LocalRows& also) const;
+  LocalRows rows_of_sum(const Sum& given, const Vector& scale, const LocalRows& also) const;
   static LocalRows rows_of(const Scaled& matrix, Index first, Index count);
   std::string spread_text(std::int64_t letters, std::string text) const;
 
@@ -153,6 +174,7 @@ class Ranks {
   struct ScaledSystem {
     std::unique_ptr<System> system;  // of S A S
     std::vector<double> scale;       // diagonal of S, the rank's rows
+    Shares shares;
   };
   std::map<std::int64_t, ScaledSystem> systems_;
   std::map<std::int64_t, KeptRows> kept_;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "uplift/distributed/cell_matrix.h"
@@ -32,16 +33,29 @@ struct SystemCost {
   double bytes = 0;                    // of this rank: its rows and its part of the factor with the work space to make it
 };
 
-/// How the rows of a matrix are shared: rank r holds first(r) ... first(r + 1) - 1, the same number or one more than the next.
+/// How the rows of a matrix are shared: rank r holds first(r) ... first(r + 1) - 1.
 class Shares {
  public:
-  Shares(PetscInt rows, int ranks) : rows_(rows), ranks_(ranks) {}
-  PetscInt first(int rank) const { return rows_ / ranks_ * rank + std::min<PetscInt>(rank, rows_ % ranks_); }
+  Shares() = default;
+  /// Every rank has as many as the next one, or one more.
+  Shares(PetscInt rows, int ranks) {
+    for (int rank = 1; rank <= ranks; ++rank) firsts_.push_back(rows / ranks * rank + std::min<PetscInt>(rank, rows % ranks));
+  }
+  /// The first row of each rank, then the number of rows.
+  explicit Shares(std::vector<PetscInt> firsts) : firsts_(std::move(firsts)) {}
+  const std::vector<PetscInt>& firsts() const { return firsts_; }
+  PetscInt first(int rank) const { return firsts_[static_cast<std::size_t>(rank)]; }
   PetscInt count(int rank) const { return first(rank + 1) - first(rank); }
+  PetscInt rows() const { return firsts_.back(); }
+  /// Of all ranks.
+  std::vector<PetscInt> counts() const {
+    std::vector<PetscInt> all(firsts_.begin() + 1, firsts_.end());
+    for (std::size_t rank = 0; rank < all.size(); ++rank) all[rank] -= firsts_[rank];
+    return all;
+  }
 
  private:
-  PetscInt rows_;
-  int ranks_;
+  std::vector<PetscInt> firsts_{0};
 };
 
 /// PETSc's options of one solver. "" is a factorisation by MUMPS; else without -ksp_type conjugate gradients (with -pc_type cholesky: its

@@ -1,6 +1,7 @@
 #pragma once
 #include "uplift/linear/solver.h"
 #include "uplift/math/symmetric_sum.h"
+#include "uplift/model/matrix_home.h"
 
 // What a solver for models whose factor is too large may offer beside what every solver does.
 namespace uplift {

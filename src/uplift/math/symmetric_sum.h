@@ -1,5 +1,4 @@
 #pragma once
-#include <functional>
 #include <memory>
 #include <span>
 #include <utility>
@@ -28,6 +27,8 @@ class DistributedMatrix {
   virtual Vector diagonal() const = 0;
   /// Entries that each process keeps.
   virtual const std::vector<double>& entries() const = 0;
+  /// The first row of each process, then the number of rows.
+  virtual const std::vector<int>& firsts() const = 0;
 };
 
 /// Cells of one class: each of them adds the same small matrix to a sum, at rows of its own.
@@ -48,19 +49,6 @@ class DistributedCells {
 struct EqualCellPart {
   std::shared_ptr<const DistributedCells> cells;  // null: nothing
   std::vector<Matrix> local;                      // of each class, unknowns x unknowns, symmetric; empty: zero
-};
-
-/// The processes of a job as a place for matrices.
-class MatrixHome {
- public:
-  virtual ~MatrixHome() = default;
-  /// Whether a matrix may be kept as the sum of equal cells and a rest.
-  virtual bool takes_cells() const = 0;
-  virtual std::shared_ptr<const DistributedCells> keep_cells(Index rows, const std::vector<EqualCells>& classes) const = 0;
-  /// The matrix whose columns `make(first, count)` returns, complete and rows x count, but for what cells add to it. `make` is called once
-  /// for each process, and what it has returned goes there before it is called again.
-  using MakeColumns = std::function<Sparse(Index first, Index count)>;
-  virtual std::shared_ptr<const DistributedMatrix> keep(Index rows, const MakeColumns& make, const EqualCellPart& part) const = 0;
 };
 
 /// A symmetric matrix to be looked at: the upper triangle of what stands here, and terms whose rows are distributed; none as a rule.

@@ -8,6 +8,7 @@
 
 #include "uplift/interface/joint.h"
 #include "uplift/model/element_sum.h"
+#include "uplift/model/matrix_home.h"
 #include "uplift/model/model.h"
 
 namespace uplift {
@@ -125,6 +126,7 @@ class ModelBuilder {
   ElementSum sum(Matrix* Local::*wanted) const { return {space_, elements_, wanted}; }
   std::vector<int> resisted(const Model& model) const;
   void assemble(Model& model) const;
+  bool is_distributed(const Model& model) const;
   void distribute(Model& model) const;
   void drop_dead_tangents(const Model& model, const Matrix& motion_shapes);
   void place_interfaces(Model& model);

@@ -7,6 +7,7 @@
 #include "uplift/model/damping.h"
 #include "uplift/model/equal_cells.h"
 #include "uplift/model/matrix_sum.h"
+#include "uplift/model/numbering.h"
 
 namespace uplift {
 
@@ -41,21 +42,27 @@ Sparse chosen_rows(const Sparse& matrix, const std::vector<int>& rows) {
 void ModelBuilder::assemble(Model& model) const {
   model.assembly.mass_damping = damping_.alpha;
   model.assembly.stiffness_damping = damping_.beta;
-  if (home_ != nullptr && model.free() > most_undistributed && damping_.modal.empty()) return distribute(model);
+  if (is_distributed(model)) return distribute(model);
   // exchanged: an assignment of a sparse matrix is a copy
   sum(&Local::stiffness).reduced(model.expansion).swap(model.stiffness);
   sum(&Local::mass).reduced(model.expansion).swap(model.mass);
   add_rayleigh(model, sum(&Local::damping).reduced(model.expansion), model.damping);
 }
 
+bool ModelBuilder::is_distributed(const Model& model) const {
+  return home_ != nullptr && model.free() > most_undistributed && damping_.modal.empty();
+}
+
 /// The columns that one process keeps are made after those of another one: never more of a matrix is here. Of equal cells there are no
 /// columns, but one matrix for all of them.
 void ModelBuilder::distribute(Model& model) const {
+  std::vector<int> firsts;
+  renumber(numbers_by_parts(model, elements_, *home_, firsts), model);
   EqualElements equal;
   std::shared_ptr<const DistributedCells> cells;
   if (home_->takes_cells()) {
     equal = find_equal_elements(space_, nodes_, elements_, model.expansion);
-    cells = home_->keep_cells(model.free(), equal.cells);
+    cells = home_->keep_cells(firsts, equal.cells);
   }
   const auto keep = [&](Matrix* Local::*wanted) {
     const ElementSum elements(space_, elements_, wanted, equal.among);
@@ -71,7 +78,7 @@ void ModelBuilder::distribute(Model& model) const {
         if (const auto own = static_cast<Index>(i) % local.rows(); rows[i] >= 0) diagonal[rows[i]] += local(own, own);
     }
     return home_->keep(
-        model.free(), [&](Index first, Index count) { return elements.columns(model.expansion, diagonal, first, count); }, part);
+        firsts, [&](Index first, Index count) { return elements.columns(model.expansion, diagonal, first, count); }, part);
   };
   auto made = std::make_shared<DistributedMatrices>();
   made->cells = cells;

@@ -5,6 +5,7 @@
 #include "uplift/math/upper_sum.h"
 #include "uplift/model/damping.h"
 #include "uplift/model/element_sum.h"
+#include "uplift/model/numbering.h"
 
 namespace uplift {
 
@@ -65,8 +66,12 @@ WholeMatrices::WholeMatrices(const Model& model) : model_(model), distributed_(m
   sum_of_elements(model, &Local::mass).reduced(model.expansion).swap(mass_);
 }
 
-void make_whole(Model& model) {
+void make_whole(Model& model, std::initializer_list<Vector*> also) {
   if (model.distributed == nullptr) return;
+  if (const std::vector<int> number = numbers_by_nodes(model); !number.empty()) {
+    renumber(number, model);
+    for (Vector* vector : also) renumber(number, *vector);
+  }
   sum_of_elements(model, &Local::stiffness).reduced(model.expansion).swap(model.stiffness);
   sum_of_elements(model, &Local::mass).reduced(model.expansion).swap(model.mass);
   add_rayleigh(model, sum_of_elements(model, &Local::damping).reduced(model.expansion), model.damping);

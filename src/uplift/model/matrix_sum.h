@@ -1,4 +1,5 @@
 #pragma once
+#include <initializer_list>
 #include <vector>
 
 #include "uplift/math/symmetric_sum.h"
@@ -38,7 +39,8 @@ class WholeMatrices {
   Sparse stiffness_, mass_;
 };
 
-/// Takes distributed matrices of a model back: it has them whole then, as any other.
-void make_whole(Model& model);
+/// Takes distributed matrices of a model back: it has them whole then and its unknowns in the same order, as any other. `also`: vectors on
+/// its free unknowns.
+void make_whole(Model& model, std::initializer_list<Vector*> also = {});
 
 }  // namespace uplift

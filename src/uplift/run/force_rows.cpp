@@ -105,9 +105,9 @@ void ForceModel::add_work(const Weights& motion, ForceRow& row) const {
       for (Sparse::InnerIterator entry(stage_.second_order->stiffness, unknown); entry; ++entry)
         add(weight * entry.value(), static_cast<int>(entry.row()), row.displacement);
     add(weight, unknown, row.yielding);
-    const auto kept = std::ranges::lower_bound(model.kept, unknown);
-    if (kept == model.kept.end() || *kept != unknown) continue;
-    const auto column = static_cast<int>(kept - model.kept.begin());
+    const Sparse::InnerIterator free(model.expansion, unknown);
+    if (!free || model.kept[static_cast<std::size_t>(free.row())] != unknown) continue;
+    const auto column = static_cast<int>(free.row());
     if (stage_.held != nullptr && stage_.held->size() > 0) row.constant -= weight * (*stage_.held)[column];
     if (assembly.modal_damping.cols() > 0)
       for (Sparse::InnerIterator entry(assembly.modal_damping, column); entry; ++entry)

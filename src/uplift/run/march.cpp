@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "uplift/model/numbering.h"
 #include "uplift/run/largest.h"
 #include "uplift/run/runner.h"
 
@@ -221,7 +222,11 @@ void Runner::March::keep(long step) {
   runner_.bases_.sum_up(stage_.step);
   run_.step = step;
   run_.march = stepper_.march_state();
-  runner_.keeping_.keep(run_);
+  const std::vector<int> number = numbers_by_nodes(runner_.model_);
+  if (number.empty()) return runner_.keeping_.keep(run_);
+  RunState state = run_;
+  renumber(number, state);
+  runner_.keeping_.keep(state);
 }
 
 /// Hands on to the next stage.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "uplift/model/numbering.h"
 #include "uplift/run/probe.h"
 #include "uplift/run/runner.h"
 
@@ -133,6 +134,7 @@ bool Runner::resume() {
                         from.result.steps.extremes.size() != model_.interfaces.size()))
     return false;
   run_ = from;
+  if (const std::vector<int> number = numbers_by_nodes(model_); !number.empty()) renumber(inverse(number), run_);
   run_.result.columns = plan_.requests;
   bases_.resume();
   rest_ = nullptr;  // of static stages before

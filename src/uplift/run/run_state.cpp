@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "uplift/base/archive.h"
+#include "uplift/model/numbering.h"
 
 namespace uplift {
 
@@ -240,6 +241,16 @@ void list_parts(Archive& archive, T& run) {
   archive(run.state, run.handover, run.marched, run.held, run.second_order, run.static_energies, run.static_stages, run.unloaded_energy,
           run.initial_scale, run.round_off_energy);
   archive(run.result, run.load_steps, run.next_check, run.recorded_until, run.peak_frame, run.peak_uplift, run.linear);
+}
+
+void renumber(const std::vector<int>& number, RunState& run) {
+  for (State* state : {&run.state, &run.march.state})
+    for (Vector* vector :
+         {&state->displacement, &state->velocity, &state->acceleration, &state->filter.displacement, &state->filter.velocity})
+      renumber(number, *vector);
+  renumber(number, run.march.handover.kick.acceleration);
+  if (run.handover) renumber(number, run.handover->kick.acceleration);
+  renumber(number, run.held);
 }
 
 namespace {

@@ -41,6 +41,10 @@ struct RunState {
   LinearCounts linear;
 };
 
+/// Gives the free unknowns new numbers (model/numbering.h). States are handed out and taken over in the order of the full unknowns: that of
+/// a distributed model depends on the number of processes.
+void renumber(const std::vector<int>& number, RunState& state);
+
 /// The state as bytes, with a checksum. Doubles keep every bit.
 std::string write_run_state(const RunState& state);
 /// The state that such bytes hold. Bytes that are cut off or changed are refused: then `why` says so, and nothing is returned.

@@ -105,7 +105,7 @@ std::optional<ReducedModel> reduce_case(const LoadedCase& loaded, const ReduceOp
   std::optional<ReducedModel> reduced(std::in_place);
   {
     BuiltCase built = build_run(loaded, spec);
-    make_whole(built.model);
+    make_whole(built.model, {&built.plan.initial_displacement, &built.plan.initial_velocity});
     if (options.model) {
       *reduced = *options.model;
       refuse_reduced(*reduced, {"uplift reduce", 0}, built, "--model");
@@ -169,7 +169,7 @@ void ReducedStart::swap_matrices(Model& model) {
 
 std::optional<RunState> begin_reduced(const ReducedModel& reduced, const Where& where, BuiltCase& built, const Watch& watch,
                                       RunResult& result, std::optional<ReducedStart>* shared) {
-  make_whole(built.model);
+  make_whole(built.model, {&built.plan.initial_displacement, &built.plan.initial_velocity});
   refuse_reduced(reduced, where, built);
   const bool shares = shared != nullptr && built.model.motions.empty();  // prescribed motions open gaps at rest
   const Vector dead = shares ? dead_force(built.at_rest()) : Vector();
