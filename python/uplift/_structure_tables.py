@@ -81,7 +81,8 @@ class StructureTables(TableStore):
             lumped: diagonal damping matrix; default False.
             free_field: for sides: the boundary follows a column of level ground (the layers beside it) under the
                 incident wave at its foot, and absorbs only what differs from it; default False.
-            incident: a wave that comes in; absent: none.
+            incident: a wave that comes in; absent: none. Several waves: several tables [[absorbing]] with the same
+                group, an incident in each; the boundary is there once, and the waves add up.
         """
         self._add("absorbing", {"group": group, "lumped": lumped, "free_field": free_field, "incident": incident})
 

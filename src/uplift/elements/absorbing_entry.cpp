@@ -50,7 +50,11 @@ const ElementEntry& entry_element_absorbing() {
                  "for sides: the boundary follows a column of level ground (the layers beside it) under the incident wave at its foot, and "
                  "absorbs only what differs from it")
                  .standard(false),
-             table("incident", incident_section(), "a wave that comes in; absent: none").optional()}},
+             table("incident", incident_section(),
+                   "a wave that comes in; absent: none. Several waves: several tables [[absorbing]] with the same group, an incident in "
+                   "each; the "
+                   "boundary is there once, and the waves add up")
+                 .optional()}},
        nullptr},
       "",
       ElementPlace::faces,

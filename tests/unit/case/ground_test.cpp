@@ -286,6 +286,57 @@ TEST(CaseGround, FreeFieldColumnsGiveTheFreeFieldWithOrderTwo) {
   expect_free_field(boundaries(true, "wave = \"SV\"", true), Cell::hex8, "vx", speed, 2, 0.01);
 }
 
+/// The boundaries under several waves, each in a table of its own on the bottom.
+std::string under_waves(bool space, const std::vector<std::string>& waves, bool free_field) {
+  std::string text = boundaries(space, "wave = \"" + waves.front() + "\"", free_field);
+  for (std::size_t i = 1; i < waves.size(); ++i)
+    text += "[[absorbing]]\ngroup = \"soil_bottom\"\nincident = { wave = \"" + waves[i] +
+            "\", kind = \"incoming\", velocity = 0.1, function = \"pulse\" }\n";
+  return free_field ? text : support::replaced(text, "[[absorbing]]\ngroup = \"soil_left\"\nfree_field = false\n", tied(space));
+}
+
+TEST(CaseGround, SeveralWavesOnOneFaceAddUp) {
+  // In every direction the motion of its own wave alone, 2 v_in at the surface: the dashpots of the bottom are there once.
+  for (const bool space : {false, true})
+    for (const bool free_field : {true, false}) {
+      const Mesh mesh = ground(space ? Cell::hex8 : Cell::quad4, 8, false);
+      const auto text = [&](const std::vector<std::string>& waves) {
+        std::string made = soil + supports(space) + under_waves(space, waves, free_field) + stages(0.55, 0.002);
+        for (const char* side : {"soil_right", "soil_front", "soil_back"})  // tied
+          if (const std::string table = std::string("[[absorbing]]\ngroup = \"") + side + "\"\nfree_field = false\n";
+              made.find(table) != std::string::npos)
+            made = support::replaced(made, table, "");
+        return made;
+      };
+      const std::vector<std::string> all = space ? std::vector<std::string>{"SV", "SH", "P"} : std::vector<std::string>{"SV", "P"};
+      const std::vector<std::string> along = space ? std::vector<std::string>{"vx", "vy", "vz"} : std::vector<std::string>{"vx", "vy"};
+      for (std::size_t k = 0; k < all.size(); ++k) {
+        const double c = all[k] == "P" ? p_speed : speed;
+        const double alone = error(text({all[k]}), mesh, space, along[k], c), together = error(text(all), mesh, space, along[k], c);
+        EXPECT_LT(together, 0.02) << all[k] << space << free_field;
+        EXPECT_NEAR(together, alone, 1e-8) << all[k] << space << free_field;
+      }
+    }
+}
+
+TEST(CaseGround, TablesOnTheSameFacesAreRefusedUnlessEachAddsAWave) {
+  const Mesh mesh = ground(Cell::quad4, 2, false);
+  const std::string rest = soil + supports(false) + boundaries(false, "wave = \"SV\"", true) + stages(0.1, 2e-3) + "[[absorbing]]\n";
+  const std::string wave = "incident = { wave = \"P\", kind = \"incoming\", function = \"pulse\" }\n";
+  EXPECT_EQ(refusal(rest + "group = \"soil_bottom\"\n" + wave, mesh), "accepted");
+  const std::string idle = refusal(rest + "group = \"soil_bottom\"\n", mesh);
+  EXPECT_NE(idle.find("found the faces of the [[absorbing]] of case.toml:"), std::string::npos) << idle;
+  EXPECT_NE(idle.find("group \"soil_bottom\", and no incident"), std::string::npos) << idle;
+  const std::string lumped = refusal(rest + "group = \"soil_bottom\"\nlumped = true\n" + wave, mesh);
+  EXPECT_NE(lumped.find("lumped: expected false, as on the faces of the [[absorbing]] of case.toml:"), std::string::npos) << lumped;
+  Mesh more = mesh;  // half of the bottom has a name of its own
+  Group half = more.groups.at("soil_bottom");
+  half.cells.resize(3);
+  more.groups.emplace("half", half);
+  const std::string part = refusal(rest + "group = \"half\"\n" + wave, more);
+  EXPECT_NE(part.find("found 3 of its 3 faces among the 6 of the [[absorbing]] of case.toml:"), std::string::npos) << part;
+}
+
 /// How much the motion differs across the ground, beside the largest motion.
 double unevenness(const RunResult& result, const Mesh& mesh, bool space) {
   const int each = space ? 6 : 3, up = space ? 2 : 1, translations = space ? 3 : 2;

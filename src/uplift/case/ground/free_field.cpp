@@ -84,21 +84,27 @@ struct SideFaces {
   }
 };
 
-/// The incident wave that comes in below the foot of a side.
-const CaseIncident& wave_below(const CaseInput& input, const SideFaces& side, double foot) {
+/// The incident waves that come in below the foot of a side, all through the same faces.
+std::vector<const CaseIncident*> waves_below(const CaseInput& input, const SideFaces& side, double foot) {
   std::vector<int> feet;
   for (const int node : side.solids.nodes(side.absorbing.group))
     if (side.same(side.place(node)[side.up], foot)) feet.push_back(node);
-  const CaseIncident* found = nullptr;
-  for (const CaseAbsorbing& absorbing : input.absorbing) {
+  const std::vector<std::size_t> first = first_on_faces(input, side.solids);
+  std::vector<const CaseIncident*> found;
+  std::size_t below = 0;  // the table whose faces they are
+  for (std::size_t k = 0; k < input.absorbing.size(); ++k) {
+    const CaseAbsorbing& absorbing = input.absorbing[k];
     if (!absorbing.incident) continue;
     const std::vector<int> nodes = side.solids.nodes(absorbing.group);
     if (std::ranges::none_of(nodes, [&](int node) { return std::ranges::find(feet, node) != feet.end(); })) continue;
-    if (found) fail(side.absorbing, "free_field", "one incident wave below the face", "several");
-    found = &*absorbing.incident;
+    if (!found.empty() && first[k] != below)
+      fail(side.absorbing, "free_field", "incident waves that come in through one group of faces below the face",
+           fmt::format("those of {} and of {}", in_quotes(input.absorbing[below].group.name), in_quotes(absorbing.group.name)));
+    found.push_back(&*absorbing.incident);
+    below = first[k];
   }
-  if (!found) fail(side.absorbing, "free_field", "an absorbing face with an incident wave at its foot", "none");
-  return *found;
+  if (found.empty()) fail(side.absorbing, "free_field", "an absorbing face with an incident wave at its foot", "none");
+  return found;
 }
 
 /// The directions of the column's unknowns in the model.
@@ -203,18 +209,20 @@ void add_free_field(const CaseInput& input, const std::vector<Stage>& stages, co
     for (const CellId face : side.faces)
       sections.push_back(absorbing_ground(*absorbing.table, side.solids.beside(face)->beside(), names.space));
     const std::vector<ColumnLayer> rows = side.rows();
-    const CaseIncident& incident = wave_below(input, side, rows.front().low);
-    const Vec3 motion = incident_motion(incident, names.space);
-    Axes axes{Vec3::UnitX(), Vec3::Unit(names.space.up())};
-    const Vec3 level = motion - motion.dot(axes.up) * axes.up;
-    if (level.norm() > 0) axes.along = level.normalized();
-    const auto field = std::make_shared<const FreeField>(
-        rows, ColumnWave{level.norm(), motion.dot(axes.up), incident_velocity(incident, names), incident.name}, damping, stages, solver);
-    if (!field->why().empty()) fail(absorbing, "free_field", "a free field that can be marched", field->why());
-    std::vector<Triplet> pattern;
-    FacePattern faces(names, *field, axes, damping.beta, pattern);
-    for (std::size_t i = 0; i < side.faces.size(); ++i) faces.add(side, side.faces[i], sections[i]);
-    builder.add_feed("free field of " + absorbing.group.name, std::move(pattern), field->functions(), field);
+    for (const CaseIncident* incident : waves_below(input, side, rows.front().low)) {  // linear: a column for each wave, and their sum
+      const Vec3 motion = incident_motion(*incident, names.space);
+      Axes axes{Vec3::UnitX(), Vec3::Unit(names.space.up())};
+      const Vec3 level = motion - motion.dot(axes.up) * axes.up;
+      if (level.norm() > 0) axes.along = level.normalized();
+      const auto field = std::make_shared<const FreeField>(
+          rows, ColumnWave{level.norm(), motion.dot(axes.up), incident_velocity(*incident, names), incident->name}, damping, stages,
+          solver);
+      if (!field->why().empty()) fail(absorbing, "free_field", "a free field that can be marched", field->why());
+      std::vector<Triplet> pattern;
+      FacePattern faces(names, *field, axes, damping.beta, pattern);
+      for (std::size_t i = 0; i < side.faces.size(); ++i) faces.add(side, side.faces[i], sections[i]);
+      builder.add_feed("free field of " + absorbing.group.name, std::move(pattern), field->functions(), field);
+    }
   }
 }
 

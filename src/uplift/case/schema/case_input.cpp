@@ -1,5 +1,7 @@
 #include "uplift/case/schema/case_input.h"
 
+#include <map>
+
 #include "uplift/mesh/mesh.h"
 
 namespace uplift {
@@ -11,6 +13,14 @@ std::vector<Table> all(const Values& root, std::string_view key, Table (*read)(c
   std::vector<Table> made;
   for (const Values& table : root.tables(key)) made.push_back(read(table, more...));
   return made;
+}
+
+/// Waves of the same name, as without one, are told apart: a free field follows a wave by its name.
+void number_waves(std::vector<CaseAbsorbing>& absorbing) {
+  std::map<std::string, int> count;
+  for (CaseAbsorbing& each : absorbing)
+    if (each.incident)
+      if (const int number = ++count[each.incident->name]; number > 1) each.incident->name += " " + std::to_string(number);
 }
 
 int dimension_of_nodes(const Values& root) {
@@ -27,6 +37,7 @@ CaseInput input_of_mesh(const Values& root) {
     for (const Values& table : root.tables(entry->name))
       made.elements[static_cast<std::size_t>(entry->place)].push_back(case_element(table, *entry));
   made.absorbing = all(root, "absorbing", case_absorbing);
+  number_waves(made.absorbing);
   made.ties = all(root, "tie", case_tie);
   made.interfaces = all(root, "interface", case_interface);
   made.foundations = all(root, "foundation", case_foundation);

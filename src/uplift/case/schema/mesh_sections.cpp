@@ -132,7 +132,7 @@ CaseMeshSource case_mesh_source(const Values& table) {
 }
 
 CaseAbsorbing case_absorbing(const Values& table) {
-  CaseAbsorbing made{{&table}, name_used(table, "group"), table.flag("free_field"), {}};
+  CaseAbsorbing made{{&table}, name_used(table, "group"), table.flag("free_field"), table.flag("lumped"), {}};
   if (const Values* incident = table_if(table, "incident")) {
     const std::string& wave = incident->text("wave");
     // The surface of free rock moves twice as much as the wave that comes up.

@@ -40,7 +40,7 @@ struct CaseIncident : CaseTable {
 /// [[absorbing]], which elements/absorbing_entry.cpp declares.
 struct CaseAbsorbing : CaseTable {
   NameUsed group;
-  bool free_field;
+  bool free_field, lumped;
   std::optional<CaseIncident> incident;
 };
 CaseAbsorbing case_absorbing(const Values&);
