@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "uplift/base/format.h"
+#include "uplift/case/advice/swaying_solids.h"
 #include "uplift/case/mesh/mesh.h"
 #include "uplift/verdict/base_over_time.h"
 
@@ -49,10 +50,13 @@ double swaying_weight(const BuiltCase& built) {
 
 std::optional<SecondOrderMoment> second_order_of(const BuiltCase& built, const RunResult& run, const VerdictNumbers& numbers) {
   const VerdictNumber* drift = find_number(numbers.whole, "max_drift");
-  if (numbers.bases() != 1 || !drift || !leaves_out(built.plan) || run.status == RunStatus::failed) return std::nullopt;
+  if (numbers.bases() != 1 || !drift || run.status == RunStatus::failed) return std::nullopt;
+  const double of_solids = second_order_of_solids(built), share = leaves_out(built.plan) ? 1 : of_solids;
   const VerdictNumber* moment = find_number(numbers.interfaces.front().numbers, "max_moment");
-  SecondOrderMoment found{swaying_weight(built), std::abs(drift->value), moment ? moment->value : 0,
+  SecondOrderMoment found{share * swaying_weight(built), std::abs(drift->value), moment ? moment->value : 0,
                           std::numeric_limits<double>::infinity()};
+  found.p_delta = !leaves_out(built.plan);
+  found.solids = of_solids > least_of_solids;
   if (!(found.weight > 0) || !moment || !(moment->value > moment->least)) return std::nullopt;
   const BaseOverTime base(built, run, 0);
   for (std::size_t i = 0; i < run.steps.size(); ++i) {
@@ -78,10 +82,16 @@ std::string SecondOrderMoment::warning() const {
   const std::string left = exceeds_what_is_left()
                                ? fmt::format(" and more than the {} that are left until it overturns", format_quantity(least_left, "N m"))
                                : "";
+  const char *what = p_delta ? "second-order effects of solids are left out, p_delta = true does not give solids any, and they count"
+                             : "second-order effects are left out, and they count",
+             *advice =
+                 solids
+                     ? "solids have no geometric stiffness: make the part that stands on the base rigid with [[rigid]], or of beams, and "
+                       "take p_delta = true in the stages after the first static one"
+                     : "take p_delta = true in the stages after the first static one";
   return fmt::format(
-      "second-order effects are left out, and they count: the weight times the drift of the top is {} ({} x {}), {} of the base moment{}; "
-      "EN 1998-1 neglects at most a tenth; take p_delta = true in the stages after the first static one",
-      format_quantity(moment(), "N m"), format_quantity(weight, "N"), format_quantity(drift, "m"), percent(ratio()), left);
+      "{}: the weight times the drift of the top is {} ({} x {}), {} of the base moment{}; EN 1998-1 neglects at most a tenth; {}", what,
+      format_quantity(moment(), "N m"), format_quantity(weight, "N"), format_quantity(drift, "m"), percent(ratio()), left, advice);
 }
 
 std::string SecondOrderMoment::clause() const {

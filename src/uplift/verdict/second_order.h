@@ -6,8 +6,8 @@
 
 namespace uplift {
 
-/// What the weight adds to the base moment because the structure has moved: second-order effects, which a run without p_delta leaves out
-/// (docs/theory, eq 31b).
+/// What the weight adds to the base moment because the structure has moved: second-order effects, which a run without p_delta leaves out,
+/// and any run of solids (docs/theory, eq 31b).
 struct SecondOrderMoment {
   double weight = 0;                                       // N, see swaying_weight()
   double drift = 0;                                        // m, of the top relative to the base, its largest
@@ -15,6 +15,8 @@ struct SecondOrderMoment {
   double least_left = 0;                                   // N m: least of stabilising less driving moment; infinite where nothing drives
   double stabilising = 0;                                  // N m: at that instant
   bool forced = false;                                     // forces on the structure act, and nothing moves the ground
+  bool p_delta = false;                                    // the run has second-order effects, and solids have none
+  bool solids = false;                                     // a part that counts stands on solids
   double moment() const { return weight * drift; }         // N m
   double ratio() const { return moment() / base_moment; }  // 1
   /// A warning is due: more than a tenth of the base moment, the limit of EN 1998-1, 4.4.2.2, and more than 1e-4 of the stabilising
@@ -33,7 +35,8 @@ struct SecondOrderMoment {
 /// on what stands on the first base: sum of W_i h_i/H [N], heights from the base node. 0 without a height.
 double swaying_weight(const BuiltCase& built);
 
-/// Of a run on one base. Nothing on several bases, with p_delta, without a drift or a base moment that is more than noise.
+/// Of a run on one base; with p_delta what stands on solids, which have no geometric stiffness. Nothing on several bases, without a drift
+/// or a base moment that is more than noise.
 std::optional<SecondOrderMoment> second_order_of(const BuiltCase& built, const RunResult& run, const VerdictNumbers& numbers);
 
 }  // namespace uplift

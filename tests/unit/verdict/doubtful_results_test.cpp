@@ -19,6 +19,13 @@ constexpr double gravity = 9.81, top_mass = 24000, footing_mass = 1e4, total = (
 
 const std::string law = "law = { type = \"springs\", K_n = 1e9, K_t = 1e8 }\n";
 
+/// Whether a warning of `check` says this.
+bool warned(const std::string& text, const std::string& of) {
+  const Case file = check_case(read_toml_text(text, "case.toml"), "case.toml");
+  const RunSpec spec = runs_of_case(file).front();
+  return std::ranges::any_of(warnings(file, spec, build(file, spec)), [&](const std::string& each) { return each.find(of) != each.npos; });
+}
+
 /// A mass of 24 t on a column of 5 m over a footing of 3 m and 10 t.
 std::string tower(const std::string& driven, const std::string& p_delta = "", const std::string& soil = law, const Tower& changed = {}) {
   return "title = \"tower\"\n" + changed.text() + weight +
@@ -109,6 +116,43 @@ TEST(SecondOrderEffects, NothingIsLeftOutWithPDelta) {
   const BuiltCase built = built_of(tower(shaken, "p_delta = true\n"));
   const RunResult run = reaching(built, 4e5, 1.1);
   EXPECT_FALSE(second_order_of(built, run, numbers_of(built, run, nullptr)));
+}
+
+/// A block of solids, 2 m x 10 m, on springs.
+std::string block_of_solids(const std::string& p_delta, const std::string& more = "") {
+  return "title = \"block\"\nbonded = false\n[mesh.soil_box.soil]\nwidth = 6\n[[mesh.soil_box.soil.layers]]\nthickness = 1\nsize = 1\n"
+         "[mesh.soil_box.block]\nwidth = 2\nheight = 10\nsize = 1\n[[solid]]\ngroup = \"soil_1\"\nE = 1e12\npoisson = 0.3\n"
+         "density = 1900\n[[solid]]\ngroup = \"block\"\nE = 1e12\npoisson = 0.2\ndensity = 1000\n[[support]]\ngroup = \"soil_bottom\"\n"
+         "fixed = [\"ux\", \"uy\"]\n[[interface]]\nname = \"base\"\nsurface = { group = \"interface\", lower = [\"soil_1\"] }\n"
+         "law = { type = \"springs\", K_n = 5e6, K_t = 1e9 }\n[gravity]\n[[function]]\nname = \"slow\"\n"
+         "shape = { type = \"ramp\", duration = 9 }\n[[load]]\ngroup = \"block_top\"\nforce = [2e3, 0]\nfunction = \"slow\"\n"
+         "[[stage]]\ntype = \"static\"\n[[stage]]\ntype = \"dynamic\"\nduration = 10\nstep = 0.02\n[damping]\nalpha = 2\n" +
+         p_delta + more;
+}
+
+/// W = 2 x 10 x 1000 kg x g = 196.2 kN; in a block that turns as a whole half of it at the height of the top has the same moment. The
+/// springs at the three pairs of nodes, K_n (0.5, 1, 0.5) m2 at -1, 0 and 1 m, turn by theta = H h/k with k = 5 MN m/rad, so that W h/2
+/// theta is W h/(2 k) = 19.6 % of the base moment.
+TEST(SecondOrderEffects, SolidsHaveNoneWithPDeltaEither) {
+  const double total_weight = 2 * 10 * 1000 * 9.80665, k = 5e6;
+  for (const bool p_delta : {false, true}) {
+    std::string text = block_of_solids("");
+    if (p_delta) text.replace(text.find("step = 0.02\n"), 12, "step = 0.02\np_delta = true\n");
+    const BuiltCase built = built_of(text);
+    EXPECT_NEAR(swaying_weight(built), total_weight / 2, 1e-3 * total_weight);
+    const RunResult run = run_of(built);
+    ASSERT_EQ(to_string(run.status), "completed") << run.reason;
+    const SecondOrderMoment effects = effects_of(built, run);
+    EXPECT_NEAR(effects.ratio(), total_weight * 10 / (2 * k), 0.02 * effects.ratio());
+    EXPECT_TRUE(effects.counts());
+    EXPECT_NE(effects.warning().find("make the part that stands on the base rigid with [[rigid]]"), std::string::npos);
+    EXPECT_EQ(effects.warning().find("second-order effects of solids are left out, p_delta = true does not") == 0, p_delta)
+        << effects.warning();
+    EXPECT_EQ(warned(text, "p_delta computes no second-order effects of solids, and 100 % of"), p_delta);
+  }
+  std::string rigid = block_of_solids("", "[nodes]\nm = [0, 1]\n[[rigid]]\nnode = \"m\"\ngroup = \"block\"\n");
+  rigid.replace(rigid.find("step = 0.02\n"), 12, "step = 0.02\np_delta = true\n");
+  EXPECT_FALSE(warned(rigid, "p_delta computes no"));
 }
 
 /// A column on a base that is nearly rigid, pushed slowly by H at its top: the drift is H h^3/(3 E I) = 1e4 x 125/(3 x 4e9) = 0.104 mm and

@@ -9,6 +9,7 @@
 #include "uplift/case/advice/input_warnings.h"
 #include "uplift/case/advice/interface_warnings.h"
 #include "uplift/case/advice/step_suggestion.h"
+#include "uplift/case/advice/swaying_solids.h"
 #include "uplift/case/ground/ground.h"
 #include "uplift/case/mesh/mesh.h"
 #include "uplift/case/schema/case_input.h"
@@ -87,8 +88,16 @@ void warn_idle_functions(const Case& read, const BuiltCase& built, std::vector<s
                       motion.name));
 }
 
-/// The geometric stiffness takes the forces of a static stage.
-void warn_p_delta(const Case& read, std::vector<std::string>& said) {
+/// The geometric stiffness takes the forces of a static stage, and solids have none.
+void warn_p_delta(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
+  const auto wanted = std::ranges::find_if(read.input->stages, &CaseStage::p_delta);
+  if (wanted == read.input->stages.end()) return;
+  if (const double share = second_order_of_solids(built); share > least_of_solids)
+    said.push_back(
+        fmt::format("{}:{}: p_delta computes no second-order effects of solids, and {} of the moment of the weight that sways arises in "
+                    "them; make the part "
+                    "rigid with [[rigid]], or of beams",
+                    wanted->where("p_delta").file, wanted->where("p_delta").line, percent(share)));
   bool stood = false;
   for (const CaseStage& stage : read.input->stages) {
     if (stage.p_delta && !stage.statics && !stood)
@@ -343,7 +352,7 @@ std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const B
   warn_massless_beams(read, said);
   warn_interfaces(read, built, said);
   warn_idle_functions(read, built, said);
-  warn_p_delta(read, said);
+  warn_p_delta(read, built, said);
   warn_sudden_weight(built, said);
   warn_duration(built, said);
   warn_sides(read, said);

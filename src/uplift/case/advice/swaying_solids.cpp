@@ -1,0 +1,56 @@
+#include "uplift/case/advice/swaying_solids.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "uplift/case/mesh/mesh.h"
+
+namespace uplift {
+namespace {
+
+double height_at(const Model& model, int node) {
+  return model.nodes[static_cast<std::size_t>(node)].position[model.space.up()];
+}
+
+/// Lowest and highest place of the deformable solids among these nodes [m]; low > high: none.
+std::pair<double, double> range_of_solids(const Model& model, const std::vector<char>& carried) {
+  std::vector<char> tied(model.nodes.size(), 0);
+  for (const Assembly::Tie& tie : model.assembly.ties) tied[static_cast<std::size_t>(tie.slave)] = 1;
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const auto& element : model.elements) {
+    const std::span<const int> nodes = element->nodes();
+    if (element->continuum() == nullptr || !carried[static_cast<std::size_t>(nodes.front())]) continue;
+    // the master of a rigid body may be one of them
+    if (std::ranges::count_if(nodes, [&](int node) { return !tied[static_cast<std::size_t>(node)]; }) <= 1) continue;
+    for (const int node : nodes) low = std::min(low, height_at(model, node)), high = std::max(high, height_at(model, node));
+  }
+  return {low, high};
+}
+
+}  // namespace
+
+double second_order_of_solids(const BuiltCase& built) {
+  const Model& model = built.model;
+  if (built.facts.empty() || built.facts.front().upper.empty()) return 0;
+  const std::vector<int>& base = built.facts.front().upper;
+  const std::vector<char> carried = part_of(model, base);
+  double foot = HUGE_VAL;
+  for (const int node : base) foot = std::min(foot, height_at(model, node));
+  const auto [lowest, high] = range_of_solids(model, carried);
+  const double low = std::max(lowest, foot);
+  if (!(high > low)) return 0;
+  double all = 0, of_solids = 0;  // N m
+  for (std::size_t i = 0; i < model.time_loads.size(); ++i) {
+    if (!model.time_loads[i].dead) continue;
+    for (SparseVector::InnerIterator entry(model.assembly.loads[i]); entry; ++entry) {
+      const int unknown = static_cast<int>(entry.index()), node = model.space.node_of(unknown);
+      if (!carried[static_cast<std::size_t>(node)] || model.space.index_of(unknown) != model.space.up()) continue;
+      const double height = height_at(model, node);
+      all -= entry.value() * std::max(0.0, height - foot);
+      of_solids -= entry.value() * (std::clamp(height, low, high) - low);
+    }
+  }
+  return all > 0 ? std::max(0.0, of_solids / all) : 0;
+}
+
+}  // namespace uplift
