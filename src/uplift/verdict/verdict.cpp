@@ -169,7 +169,7 @@ void say_uplift(const BuiltCase& built, const RunResult& run, Verdict& verdict) 
                                  format_quantity(run.end_time, "s"), percent(run.end_time > 0 ? run.time_uplifted / run.end_time : 0));
   if (verdict.numbers.full_loss.empty()) text += " There is no full loss of contact.";
   if (run.max_penetration > built.plan.gap_tolerance)
-    text += fmt::format(" Maximum joint closure in the contact zone: {}.", format_quantity(run.max_penetration, "m"));
+    text += fmt::format(" Largest compression of the joint: {}.", format_quantity(run.max_penetration, "m"));
   verdict.paragraphs.push_back(std::move(text));
   say_full_loss(verdict);
 }

@@ -33,7 +33,7 @@ inline constexpr auto verdict_quantities = [] {
       {"change_of_top_motion", "1", "change of the motion of the top compared with the bonded reference run", "change of top motion", run},
       {"max_drift", "m", "largest horizontal motion of the top relative to the base, rotation of the base included", "drift of the top",
        run},
-      {"max_drift_without_rotation", "m", "max_drift without the rotation of the base: deformation of a structure on one base",
+      {"max_drift_without_rotation", "m", "largest drift without the rotation of the base: deformation of a structure on one base",
        "drift without rotation", run},
       {"max_total_shear", "N", "largest horizontal force of all bases and walls together", "total horizontal force", run},
       {"max_total_moment", "N m", "largest moment of all bases and walls together about the middle of the bases", "total moment", run},
