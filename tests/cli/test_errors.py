@@ -41,6 +41,10 @@ class BadInput(CliTest):
         done = self.uplift("run", "case.toml", "--otu=here", expect=2)
         self.assertEqual(done.stderr.strip(), 'error: uplift run: expected one of its options (--help lists them), found "--otu" (did you mean "--out"?)')
 
+    def test_empty_name_of_the_results(self):
+        self.write(BASE)
+        self.assertIn("expected a name, found an empty one", self.uplift("run", "case.toml", "-o", "", expect=2).stderr)
+
     def test_tons_are_refused(self):
         text = self.replace("mass = 24317", 'mass = "24 tons"')
         self.refused(text, f'{{file}}:{line_of(text, "24 tons")}: mass[0].mass: expected a mass > 0 kg, found "24 tons" (a ton is 907, 1000 or 1016 kg; t is 1000 kg) (did you mean "t"?)')

@@ -46,9 +46,14 @@ CLI::App* add(CLI::App& app, const char* name, const char* summary, const char* 
 void take_case(CLI::App* command, Options& options) {
   command->add_option("case", options.file, "case file (TOML), or folder that contains case.toml")->required();
 }
+/// Such as that of a variable of the shell that is not set.
+std::string refuse_empty(const std::string& name) {
+  return name.empty() ? "expected a name, found an empty one" : "";
+}
 void take_output(CLI::App* command, Options& options) {
-  command->add_option("-o,--out", options.out,
-                      "folder for the results (default out/NAME); earlier results are moved to NAME.1, NAME.2, ...");
+  command
+      ->add_option("-o,--out", options.out, "folder for the results (default out/NAME); earlier results are moved to NAME.1, NAME.2, ...")
+      ->check(refuse_empty);
   command->add_flag("-q,--quiet", options.quiet, "print errors only");
 }
 void take_json(CLI::App* command, Options& options) {
@@ -161,8 +166,9 @@ void declare(CLI::App& app, Choices& given) {
                 "  uplift reduce tower --model tower/coarse.rom --controls 59 --out tower/coarse.rom\n"
                 "Then reduced_model = \"tower.rom\" in the case file makes its runs use it.");
   take_case(command, options);
-  command->add_option("-o,--out", options.out,
-                      "the file (default NAME.rom beside the case file); an earlier one is moved to NAME.rom.1, ...");
+  command
+      ->add_option("-o,--out", options.out, "the file (default NAME.rom beside the case file); an earlier one is moved to NAME.rom.1, ...")
+      ->check(refuse_empty);
   CLI::Option* model = command->add_option(
       "--model", given.model, "a reduced model of the same structure: control runs are made for it (--controls) instead of a new one");
   command->add_option("-f,--frequency", given.reduce.frequency, "motions up to about this frequency [Hz] are represented (default 25)")

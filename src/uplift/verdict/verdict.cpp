@@ -158,7 +158,7 @@ void say_uplift(const BuiltCase& built, const RunResult& run, Verdict& verdict) 
   }
   for (const InterfaceVerdict& said : bases_of(verdict)) {
     const std::string of = of_interface(verdict, said);
-    say(find_number(said.numbers, "max_uplifted_ratio"), "Uplifted area" + of, "largest; counted by gap", verdict, true);
+    say(find_number(said.numbers, "max_uplifted_ratio"), "Uplifted area" + of, "largest share with an open gap", verdict, true);
     say(find_number(said.numbers, "max_opening"), "Largest gap" + of, "", verdict, true);
     for (const InterfaceVerdict::Above& above : said.above)
       verdict.facts.push_back({fmt::format("Uplifted above {}{}", percent(above.threshold), of), format_quantity(above.duration, "s"),
