@@ -15,7 +15,7 @@ class DistributedMatrix;
 struct DistributedTerm {
   double factor;
   std::shared_ptr<const DistributedMatrix> matrix;
-  bool is_mass = false;
+  bool is_mass = false;  // the matrix is the mass of a model, not its stiffness or damping
 };
 
 /// A symmetric matrix of which every process of a job keeps some rows, as long as this object lives.
