@@ -101,11 +101,11 @@ step = 5e-3
 
 /// Tetrahedra with nodes in arbitrary order: soil, a block on it with a joint between, a plate on the soil.
 Mesh tetrahedra() {
-  constexpr int across = 12, deep = 9;
+  constexpr int across = 10, deep = 7;
   const auto part = [](int i, int j, int k) {
     const auto within = [](int at, int first, int end) { return at >= first && at < end; };
     if (k < deep) return 0;
-    if (within(i, 5, 8) && within(j, 5, 8)) return 1;
+    if (within(i, 4, 7) && within(j, 4, 7)) return 1;
     return k == deep && within(i, 1, 3) && within(j, 1, 3) ? 2 : -1;
   };
   const auto face = [](int of, Direction direction, int other) -> std::string {

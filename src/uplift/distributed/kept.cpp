@@ -1,12 +1,16 @@
-// The rows that the ranks keep of stiffness, mass and damping. Rank 0 makes them, those of one rank after another; from then on every rank
-// multiplies with its own ones and makes its own of any sum.
+// The rows that the ranks keep of stiffness, mass and damping. Every rank makes its own ones from the elements that reach them, which rank
+// 0 sends to one rank after another; from then on it multiplies with them and makes its rows of any sum.
 #include "uplift/distributed/kept.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
+#include <optional>
 
 #include "uplift/distributed/messages.h"
+#include "uplift/distributed/rank_elements.h"
 #include "uplift/distributed/ranks.h"
+#include "uplift/model/element_sum.h"
 
 namespace uplift {
 
@@ -64,11 +68,13 @@ std::vector<int> HomeOnRanks::divide(const CoupledVertices& graph) const {
   return Ranks::all().divide(graph);
 }
 
-std::shared_ptr<const DistributedMatrix> HomeOnRanks::keep(const std::vector<int>& firsts, const MakeColumns& make,
-                                                           const EqualCellPart& part) const {
-  const auto* cells = dynamic_cast<const KeptCells*>(part.cells.get());
-  Ranks::Kept kept = Ranks::all().keep(firsts, make, {cells != nullptr ? cells->number() : 0, &part.local});
-  return std::make_shared<const KeptMatrix>(kept.matrix, firsts, std::move(kept.entries));
+std::vector<std::shared_ptr<const DistributedMatrix>> HomeOnRanks::keep(const std::vector<int>& firsts, const ElementsOfModel& elements,
+                                                                        const std::vector<MatrixOfElements>& matrices) const {
+  const auto* cells = dynamic_cast<const KeptCells*>(matrices.front().cells.cells.get());
+  std::vector<std::shared_ptr<const DistributedMatrix>> made;
+  for (Ranks::Kept& kept : Ranks::all().keep(firsts, {elements, matrices, cells != nullptr ? cells->number() : 0}))
+    made.push_back(std::make_shared<const KeptMatrix>(kept.matrix, firsts, std::move(kept.entries)));
+  return made;
 }
 
 std::shared_ptr<const DistributedCells> HomeOnRanks::keep_cells(const std::vector<int>& firsts,
@@ -136,13 +142,14 @@ Ranks::KeptCells Ranks::keep_cells_together(const Order& order, const Shares* gi
   return kept;
 }
 
-Ranks::Kept Ranks::keep(const std::vector<int>& firsts, const MatrixHome::MakeColumns& make, const PartOfCells& part) {
+std::vector<Ranks::Kept> Ranks::keep(const std::vector<int>& firsts, const Elements& elements) {
   const std::lock_guard lock(one_at_a_time_);
   HalfWay half_way(half_way_);
   const Shares shares(firsts);
-  const Order order{What::keep, ++made_, shares.rows(), 0, 0, 0, 0, part.cells};
+  const Order order{What::keep, made_ + 1, shares.rows(), 0, 0, std::ssize(elements.matrices), 0, elements.cells};
+  made_ += order.terms;
   tell(order);
-  Kept kept = keep_together(order, &shares, &make, part.local);
+  std::vector<Kept> kept = keep_together(order, &shares, &elements);
   half_way.done();
   return kept;
 }
@@ -154,20 +161,48 @@ Shares Ranks::spread_shares(const Shares* shares) const {
   return Shares(std::move(firsts));
 }
 
-/// `given`, `make` and `local`: on rank 0.
-Ranks::Kept Ranks::keep_together(const Order& order, const Shares* given, const MatrixHome::MakeColumns* make,
-                                 const std::vector<Matrix>* local) {
-  KeptRows& mine = kept_[order.system];
-  mine.shares = spread_shares(given);
-  if (order.cells != 0) {
-    mine.cells = cells_.at(order.cells);
-    mine.local = spread_local(mine.cells->classes(), local);
+/// `given` and `elements`: on rank 0.
+std::vector<Ranks::Kept> Ranks::keep_together(const Order& order, const Shares* given, const Elements* elements) {
+  const Shares shares = spread_shares(given);
+  std::optional<RankElements> mine;
+  if (elements == nullptr) mine.emplace(order.rows, ranks_);
+  for (int rank = 1; rank < count_ && elements != nullptr; ++rank)
+    send_elements(elements->model, shares.first(rank), shares.first(rank + 1), rank, ranks_);
+  std::vector<Kept> kept;
+  for (std::int64_t k = 0; k < order.terms; ++k) {
+    Kept& matrix = kept.emplace_back(Kept{order.system + k, std::vector<double>(static_cast<std::size_t>(count_))});
+    const MatrixOfElements* of = elements != nullptr ? &elements->matrices[static_cast<std::size_t>(k)] : nullptr;
+    KeptRows& rows = kept_[matrix.matrix];
+    rows.shares = shares;
+    if (order.cells != 0) {
+      rows.cells = cells_.at(order.cells);
+      rows.local = spread_local(rows.cells->classes(), of != nullptr ? &of->cells.local : nullptr);
+    }
+    make_columns(elements != nullptr ? elements->model : mine->model(), spread_wanted(of), rows);
+    const auto entries = static_cast<double>(rows.columns.nonZeros());
+    MPI_Gather(&entries, 1, MPI_DOUBLE, matrix.entries.data(), 1, MPI_DOUBLE, 0, ranks_);
   }
-  spread_columns(mine.shares, make).swap(mine.columns);
-  Kept kept{order.system, std::vector<double>(static_cast<std::size_t>(count_))};
-  const auto entries = static_cast<double>(mine.columns.nonZeros());
-  MPI_Gather(&entries, 1, MPI_DOUBLE, kept.entries.data(), 1, MPI_DOUBLE, 0, ranks_);
   return kept;
+}
+
+/// Which matrix of the elements; `matrix`: on rank 0.
+Matrix* Local::*Ranks::spread_wanted(const MatrixOfElements* matrix) const {
+  constexpr Matrix* Local::*all[] = {&Local::stiffness, &Local::mass, &Local::damping};
+  std::int64_t which = matrix != nullptr ? std::ranges::find(all, matrix->wanted) - std::begin(all) : 0;
+  MPI_Bcast(&which, 1, MPI_INT64_T, 0, ranks_);
+  return all[which];
+}
+
+/// The rank's rows. What is round-off depends on the diagonal in the rows of all ranks.
+void Ranks::make_columns(const ElementsOfModel& elements, Matrix* Local::*wanted, KeptRows& rows) const {
+  const ElementSum sum(elements.space, elements.elements, wanted, elements.left_out);
+  const PetscInt first = rows.shares.first(rank_), count = rows.shares.count(rank_);
+  Vector own = sum.diagonal(elements.expansion, first, count), diagonal(rows.shares.rows());
+  if (rows.cells != nullptr) own += rows.cells->diagonal(rows.local);
+  MPI_Allgatherv(own.data(), count, MPI_DOUBLE, diagonal.data(), rows.shares.counts().data(), rows.shares.firsts().data(), MPI_DOUBLE,
+                 ranks_);
+  sum.columns(elements.expansion, diagonal, first, count).swap(rows.columns);
+  rows.columns.data().squeeze();
 }
 
 std::vector<Matrix> Ranks::spread_local(std::size_t classes, const std::vector<Matrix>* local) const {
@@ -179,31 +214,6 @@ std::vector<Matrix> Ranks::spread_local(std::size_t classes, const std::vector<M
     MPI_Bcast(one.data(), static_cast<int>(one.size()), MPI_DOUBLE, 0, ranks_);
   }
   return all;
-}
-
-/// `make`: on rank 0, whose own rows are made last.
-Sparse Ranks::spread_columns(const Shares& shares, const MatrixHome::MakeColumns* make) const {
-  Sparse mine(shares.rows(), shares.count(rank_));
-  if (make == nullptr) {
-    std::int64_t entries = 0;
-    receive(&entries, 1, MPI_INT64_T, ranks_);
-    mine.resizeNonZeros(entries);
-    receive(mine.outerIndexPtr(), mine.cols() + 1, MPI_INT, ranks_);
-    receive(mine.innerIndexPtr(), entries, MPI_INT, ranks_);
-    receive(mine.valuePtr(), entries, MPI_DOUBLE, ranks_);
-    return mine;
-  }
-  for (int rank = count_ - 1; rank > 0; --rank) {
-    const Sparse theirs = (*make)(shares.first(rank), shares.count(rank));
-    const std::int64_t entries = theirs.nonZeros();
-    send(&entries, 1, MPI_INT64_T, rank, ranks_);
-    send(theirs.outerIndexPtr(), theirs.cols() + 1, MPI_INT, rank, ranks_);
-    send(theirs.innerIndexPtr(), entries, MPI_INT, rank, ranks_);
-    send(theirs.valuePtr(), entries, MPI_DOUBLE, rank, ranks_);
-  }
-  (*make)(0, shares.count(0)).swap(mine);
-  mine.data().squeeze();
-  return mine;
 }
 
 void Ranks::drop(std::int64_t kept) {

@@ -51,8 +51,8 @@ class HomeOnRanks final : public MatrixHome {
   std::vector<int> divide(const CoupledVertices& graph) const override;
   bool takes_cells() const override { return takes_cells_; }
   std::shared_ptr<const DistributedCells> keep_cells(const std::vector<int>& firsts, const std::vector<EqualCells>& classes) const override;
-  std::shared_ptr<const DistributedMatrix> keep(const std::vector<int>& firsts, const MakeColumns& make,
-                                                const EqualCellPart& part) const override;
+  std::vector<std::shared_ptr<const DistributedMatrix>> keep(const std::vector<int>& firsts, const ElementsOfModel& elements,
+                                                             const std::vector<MatrixOfElements>& matrices) const override;
 
  private:
   bool takes_cells_;

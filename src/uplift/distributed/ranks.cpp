@@ -92,7 +92,7 @@ void Ranks::serve() {
         divide_together(order, nullptr);
         break;
       case What::keep:
-        keep_together(order, nullptr, nullptr, nullptr);
+        keep_together(order, nullptr, nullptr);
         break;
       case What::keep_cells:
         keep_cells_together(order, nullptr, nullptr);

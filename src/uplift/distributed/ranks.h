@@ -47,12 +47,13 @@ class Ranks {
     std::int64_t matrix = 0;      // its number
     std::vector<double> entries;  // of each rank
   };
-  /// Every rank keeps its rows of a symmetric matrix, to which cells that the ranks keep may add; see MatrixHome::keep.
-  struct PartOfCells {
+  /// Every rank keeps its rows of symmetric matrices, to which cells that the ranks keep may add; see MatrixHome::keep.
+  struct Elements {
+    const ElementsOfModel& model;
+    const std::vector<MatrixOfElements>& matrices;
     std::int64_t cells = 0;  // their number; 0: there are none
-    const std::vector<Matrix>* local = nullptr;
   };
-  Kept keep(const std::vector<int>& firsts, const MatrixHome::MakeColumns& make, const PartOfCells& part);
+  std::vector<Kept> keep(const std::vector<int>& firsts, const Elements& elements);
   /// Every rank keeps the cells that reach its rows; see MatrixHome::keep_cells.
   struct KeptCells {
     std::int64_t cells = 0;     // their number
@@ -111,7 +112,7 @@ class Ranks {
     // options; terms: kept matrices, or classes of cells
     std::int64_t system = 0, rows = 0, columns = 0, letters = 0, terms = 0;
     double residual = 0;
-    std::int64_t cells = 0;  // that add to a kept matrix
+    std::int64_t cells = 0;  // that add to kept matrices
   };
   Ranks();
   void tell(const Order& order);
@@ -134,8 +135,9 @@ class Ranks {
   };
   Made make_together(const Order& order, const Scaled* matrix, std::string options);
   Forecast foretell_together(const Order& order, const Scaled* matrix, std::string options);
-  Kept keep_together(const Order& order, const Shares* given, const MatrixHome::MakeColumns* make, const std::vector<Matrix>* local);
-  Sparse spread_columns(const Shares& shares, const MatrixHome::MakeColumns* make) const;
+  std::vector<Kept> keep_together(const Order& order, const Shares* given, const Elements* elements);
+  Matrix* Local::*spread_wanted(const MatrixOfElements* matrix) const;
+  void make_columns(const ElementsOfModel& elements, Matrix* Local::*wanted, KeptRows& rows) const;
   std::vector<int> divide_together(const Order& order, const CoupledVertices* graph) const;
   Shares spread_shares(const Shares* shares) const;
   KeptCells keep_cells_together(const Order& order, const Shares* given, const std::vector<EqualCells>* classes);

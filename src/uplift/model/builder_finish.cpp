@@ -53,8 +53,7 @@ bool ModelBuilder::is_distributed(const Model& model) const {
   return home_ != nullptr && model.free() > most_undistributed && damping_.modal.empty();
 }
 
-/// The columns that one process keeps are made after those of another one: never more of a matrix is here. Of equal cells there are no
-/// columns, but one matrix for all of them.
+/// Every process makes its rows. Of equal cells there are none, but one matrix for all of them.
 void ModelBuilder::distribute(Model& model) const {
   std::vector<int> firsts;
   renumber(numbers_by_parts(model, elements_, *home_, firsts), model);
@@ -64,27 +63,21 @@ void ModelBuilder::distribute(Model& model) const {
     equal = find_equal_elements(space_, nodes_, elements_, model.expansion);
     cells = home_->keep_cells(firsts, equal.cells);
   }
-  const auto keep = [&](Matrix* Local::*wanted) {
-    const ElementSum elements(space_, elements_, wanted, equal.among);
-    Vector diagonal = elements.diagonal(model.expansion);
-    EqualCellPart part{cells, {}};
-    Matrix stiffness;
-    for (std::size_t k = 0; k < equal.cells.size(); ++k) {
+  std::vector<MatrixOfElements> matrices;
+  Matrix stiffness;
+  for (const auto wanted : {&Local::stiffness, &Local::mass, &Local::damping}) {
+    EqualCellPart& part = matrices.emplace_back(MatrixOfElements{wanted, {cells, {}}}).cells;
+    for (const std::vector<int>& one : equal.classes) {
       Matrix& local = part.local.emplace_back();
-      ElementSum::form(*elements_[equal.classes[k].front()], wanted, local, stiffness);
+      ElementSum::form(*elements_[static_cast<std::size_t>(one.front())], wanted, local, stiffness);
       if (local.isZero(0)) local.resize(0, 0);
-      const std::vector<int>& rows = equal.cells[k].rows;
-      for (std::size_t i = 0; i < rows.size() && local.size() > 0; ++i)
-        if (const auto own = static_cast<Index>(i) % local.rows(); rows[i] >= 0) diagonal[rows[i]] += local(own, own);
     }
-    return home_->keep(
-        firsts, [&](Index first, Index count) { return elements.columns(model.expansion, diagonal, first, count); }, part);
-  };
+  }
+  std::vector<std::shared_ptr<const DistributedMatrix>> kept =
+      home_->keep(firsts, {space_, nodes_, elements_, equal.among, model.expansion}, matrices);
   auto made = std::make_shared<DistributedMatrices>();
-  made->cells = cells;
-  made->stiffness = keep(&Local::stiffness);
-  made->mass = keep(&Local::mass);
-  made->damping = keep(&Local::damping);
+  made->cells = std::move(cells);
+  made->stiffness = std::move(kept[0]), made->mass = std::move(kept[1]), made->damping = std::move(kept[2]);
   if (made->damping->diagonal().isZero(0)) made->damping.reset();
   model.distributed = std::move(made);
 }

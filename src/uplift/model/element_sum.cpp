@@ -152,10 +152,13 @@ Vector ElementSum::size_of_diagonal(const Sparse& expansion) const {
   return diagonal;
 }
 
-Vector ElementSum::diagonal(const Sparse& expansion) const {
-  Vector diagonal = Vector::Zero(expansion.rows());
-  each_group(expansion, {0, expansion.rows()},
-             [&](std::span<const int> unknowns, const Matrix& block) { diagonal(unknowns) += block.diagonal(); });
+Vector ElementSum::diagonal(const Sparse& expansion, Index first, Index count) const {
+  const Columns columns{first, count};
+  Vector diagonal = Vector::Zero(count);
+  each_group(expansion, columns, [&](std::span<const int> unknowns, const Matrix& block) {
+    for (std::size_t i = 0; i < unknowns.size(); ++i)
+      if (columns.has(unknowns[i])) diagonal[unknowns[i] - first] += block(static_cast<Index>(i), static_cast<Index>(i));
+  });
   return diagonal;
 }
 

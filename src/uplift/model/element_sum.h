@@ -26,8 +26,8 @@ class ElementSum {
   Vector size_of_diagonal(const Sparse& expansion) const;
   /// T^T A T without entries that are only round-off.
   Sparse reduced(const Sparse& expansion) const;
-  /// Diagonal of T^T A T.
-  Vector diagonal(const Sparse& expansion) const;
+  /// Diagonal of T^T A T, from `first` on.
+  Vector diagonal(const Sparse& expansion, Index first, Index count) const;
   /// Columns first ... first + count - 1 of T^T A T, free x count: those of `reduced`, to the last bit. Elements that do not reach them are
   /// not looked at. `diagonal`: of T^T A T.
   Sparse columns(const Sparse& expansion, const Vector& diagonal, Index first, Index count) const;

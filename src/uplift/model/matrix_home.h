@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "uplift/math/symmetric_sum.h"
+#include "uplift/model/model.h"
 
 namespace uplift {
 
@@ -13,6 +14,21 @@ struct CoupledVertices {
   std::vector<int> unknowns;  // of each vertex
   using TakeSet = std::function<void(std::span<const int> vertices)>;
   std::function<void(const TakeSet& take)> each_set;
+};
+
+/// What the elements of a model are summed up from.
+struct ElementsOfModel {
+  Space space;
+  const std::vector<Node>& nodes;
+  const std::vector<std::unique_ptr<const Element>>& elements;
+  const std::vector<char>& left_out;  // see ElementSum
+  const Sparse& expansion;            // T^T
+};
+
+/// One matrix of them, and what equal cells add to it, which are left out of the elements.
+struct MatrixOfElements {
+  Matrix* Local::*wanted;
+  EqualCellPart cells;
 };
 
 /// The processes of a job as a place for matrices.
@@ -24,14 +40,12 @@ class MatrixHome {
   virtual std::vector<int> divide(const CoupledVertices& graph) const = 0;
   /// Whether a matrix may be kept as the sum of equal cells and a rest.
   virtual bool takes_cells() const = 0;
-  /// `firsts`: see DistributedMatrix.
+  /// `firsts`: see DistributedMatrix::firsts.
   virtual std::shared_ptr<const DistributedCells> keep_cells(const std::vector<int>& firsts,
                                                              const std::vector<EqualCells>& classes) const = 0;
-  /// The matrix whose columns `make(first, count)` returns, complete and rows x count, but for what cells add to it. `make` is called once
-  /// for each process, and what it has returned goes there before it is called again.
-  using MakeColumns = std::function<Sparse(Index first, Index count)>;
-  virtual std::shared_ptr<const DistributedMatrix> keep(const std::vector<int>& firsts, const MakeColumns& make,
-                                                        const EqualCellPart& part) const = 0;
+  /// Each process gets the elements that reach its rows and makes these rows from them.
+  virtual std::vector<std::shared_ptr<const DistributedMatrix>> keep(const std::vector<int>& firsts, const ElementsOfModel& elements,
+                                                                     const std::vector<MatrixOfElements>& matrices) const = 0;
 };
 
 }  // namespace uplift
