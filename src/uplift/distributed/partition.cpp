@@ -41,18 +41,25 @@ PartitionGraph::PartitionGraph(std::vector<PetscInt> unknowns, std::vector<std::
           take(member[m]);
     }
   };
-  first_.assign(vertices + 1, 0);
+  PetscMalloc1(vertices + 1, &first_);
+  first_[0] = 0;
   for (std::size_t vertex = 0; vertex < vertices; ++vertex) {
     first_[vertex + 1] = first_[vertex];
     each_neighbour(vertex, [&](PetscInt) { ++first_[vertex + 1]; });
   }
-  neighbour_.resize(static_cast<std::size_t>(first_.back()));
+  PetscMalloc1(std::max<std::size_t>(static_cast<std::size_t>(first_[vertices]), 1), &neighbour_);
   std::ranges::fill(seen, -1);
   for (std::size_t vertex = 0; vertex < vertices; ++vertex) {
-    auto place = neighbour_.begin() + first_[vertex];
+    PetscInt* place = neighbour_ + first_[vertex];
     each_neighbour(vertex, [&](PetscInt other) { *place++ = other; });
-    std::sort(neighbour_.begin() + first_[vertex], place);
+    std::sort(neighbour_ + first_[vertex], place);
   }
+  const auto size = static_cast<PetscInt>(vertices);
+  MatCreateMPIAdj(PETSC_COMM_SELF, size, size, first_, neighbour_, nullptr, &graph_);
+}
+
+PartitionGraph::~PartitionGraph() {
+  MatDestroy(&graph_);
 }
 
 std::vector<PetscInt> PartitionGraph::divide(PetscInt parts) const {
@@ -79,23 +86,16 @@ std::vector<PetscInt> PartitionGraph::partition(PetscInt parts) const {
   return part;
 }
 
-/// PETSc frees what it is given.
 PetscErrorCode PartitionGraph::ask_ptscotch(PetscInt parts, std::vector<PetscInt>& part) const {
   PetscFunctionBeginUser;
   const auto vertices = static_cast<PetscInt>(unknowns_.size());
-  PetscInt *first = nullptr, *neighbour = nullptr, *unknowns = nullptr;
-  Mat graph = nullptr;
+  PetscInt* unknowns = nullptr;  // PETSc frees them
   MatPartitioning partitioning = nullptr;
   IS found = nullptr;
-  PetscCall(PetscMalloc1(first_.size(), &first));
-  PetscCall(PetscMalloc1(neighbour_.size(), &neighbour));
   PetscCall(PetscMalloc1(unknowns_.size(), &unknowns));
-  std::ranges::copy(first_, first);
-  std::ranges::copy(neighbour_, neighbour);
   std::ranges::copy(unknowns_, unknowns);
-  PetscCall(MatCreateMPIAdj(PETSC_COMM_SELF, vertices, vertices, first, neighbour, nullptr, &graph));
   PetscCall(MatPartitioningCreate(PETSC_COMM_SELF, &partitioning));
-  PetscCall(MatPartitioningSetAdjacency(partitioning, graph));
+  PetscCall(MatPartitioningSetAdjacency(partitioning, graph_));
   PetscCall(MatPartitioningSetType(partitioning, MATPARTITIONINGPTSCOTCH));
   PetscCall(MatPartitioningSetNParts(partitioning, parts));
   PetscCall(MatPartitioningSetVertexWeights(partitioning, unknowns));
@@ -107,7 +107,6 @@ PetscErrorCode PartitionGraph::ask_ptscotch(PetscInt parts, std::vector<PetscInt
   PetscCall(ISRestoreIndices(found, &numbers));
   PetscCall(ISDestroy(&found));
   PetscCall(MatPartitioningDestroy(&partitioning));
-  PetscCall(MatDestroy(&graph));
   PetscFunctionReturn(0);
 }
 
@@ -117,7 +116,7 @@ double PartitionGraph::halo(const std::vector<PetscInt>& part) const {
   for (std::size_t vertex = 0; vertex < part.size(); ++vertex) {
     others.clear();
     for (PetscInt k = first_[vertex]; k < first_[vertex + 1]; ++k)
-      if (const PetscInt other = part[static_cast<std::size_t>(neighbour_[static_cast<std::size_t>(k)])];
+      if (const PetscInt other = part[static_cast<std::size_t>(neighbour_[k])];
           other != part[vertex] && std::ranges::find(others, other) == others.end())
         others.push_back(other);
     sum += static_cast<double>(others.size()) * unknowns_[vertex];

@@ -1,5 +1,5 @@
 #pragma once
-#include <petscsys.h>
+#include <petscmat.h>
 
 #include <vector>
 
@@ -10,6 +10,9 @@ class PartitionGraph {
  public:
   /// `start`, `member`: the sets one after another.
   PartitionGraph(std::vector<PetscInt> unknowns, std::vector<std::size_t> start, std::vector<PetscInt> member);
+  ~PartitionGraph();
+  PartitionGraph(const PartitionGraph&) = delete;
+  PartitionGraph& operator=(const PartitionGraph&) = delete;
   /// The part of each vertex: of PTScotch's partition, or of ranges of numbers where that has the smaller halo or PTScotch fails.
   std::vector<PetscInt> divide(PetscInt parts) const;
   /// Parts of about as many unknowns, of vertices one after another.
@@ -23,7 +26,9 @@ class PartitionGraph {
 
  private:
   PetscErrorCode ask_ptscotch(PetscInt parts, std::vector<PetscInt>& part) const;
-  std::vector<PetscInt> unknowns_, first_, neighbour_;  // neighbours of each vertex, ascending
+  std::vector<PetscInt> unknowns_;
+  Mat graph_ = nullptr;                               // owns the lists:
+  PetscInt *first_ = nullptr, *neighbour_ = nullptr;  // neighbours of each vertex, ascending
 };
 
 }  // namespace uplift
