@@ -7,13 +7,18 @@ namespace {
 
 using Result = CriterionResult::State;
 
-/// A number that there is not leaves the criterion open, except where its absence says that nothing was asked of the base: no gap, no
-/// interval without contact.
+/// The absence of a number says that nothing was asked of the base: no gap opened, no interval is without contact, nothing hit.
+bool met_where_absent(const VerdictQuantity& quantity, const std::vector<VerdictNumber>& numbers) {
+  const VerdictNumber* open = find_number(numbers, "max_uplifted_ratio");  // of bases, whose run got to an instant
+  return open && (quantity.is("longest_full_loss") || quantity.is("max_impulse") || (quantity.is("first_uplift") && !(open->value > 0)));
+}
+
+/// Any other number that there is not leaves the criterion open.
 CriterionResult result_of(const Criterion& criterion, const std::vector<VerdictNumber>& numbers, const std::string& interface) {
   CriterionResult result{criterion, interface};
   const VerdictNumber* number = find_number(numbers, *criterion.quantity);
   if (!number) {
-    if (criterion.quantity->is("longest_full_loss") && find_number(numbers, "full_loss_time")) result.state = Result::met;
+    if (met_where_absent(*criterion.quantity, numbers)) result.state = Result::met;
     return result;
   }
   result.value = number->value;

@@ -41,8 +41,29 @@ TEST(VerdictCriteria, MetOrNot) {
   EXPECT_EQ(state("min_overturning_safety", "2"), Result::not_met);
   EXPECT_EQ(state("min_sliding_safety", "1.1"), Result::undetermined);  // nothing pushes
   EXPECT_EQ(state("longest_full_loss", "\"0.1 s\""), Result::met);
+  EXPECT_EQ(state("max_impulse", "\"1 N s\""), Result::met);     // springs have no impacts of constraints
+  EXPECT_EQ(state("first_uplift", "\"0.05 s\""), Result::met);   // it opens at the second instant, at 0.1 s: later than asked
+  EXPECT_EQ(state("first_uplift", "\"2 s\""), Result::not_met);  // earlier than asked
   EXPECT_EQ(state("max_opening", "\"2 mm\"", RunStatus::interrupted), Result::undetermined);
   EXPECT_EQ(state("max_opening", "\"1 mm\"", RunStatus::interrupted), Result::not_met);
+}
+
+/// A base that never opens keeps any limit on when it may open, unless the run did not get to its end.
+TEST(VerdictCriteria, FirstUpliftWithoutUplift) {
+  const BuiltCase built = built_of(with_criterion("quantity = \"first_uplift\"\nlimit = \"2 s\"\nsource = \"client\"\n"));
+  RunResult run = run_of({turned(built, 0), turned(built, 0.5)}, 0.1);
+  run.status = RunStatus::completed;
+  EXPECT_EQ(numbers_of(built, run, nullptr).criteria.at(0).state, CriterionResult::State::met);
+  run.status = RunStatus::interrupted;
+  EXPECT_EQ(numbers_of(built, run, nullptr).criteria.at(0).state, CriterionResult::State::undetermined);
+}
+
+/// In the direction of what is worse for a structure: safeties, the least compression and the time until it opens must not be small.
+TEST(VerdictCriteria, SideOfTheLimit) {
+  std::vector<std::string> at_least;
+  for (const VerdictQuantity& quantity : verdict_quantities)
+    if (quantity.at_least) at_least.emplace_back(quantity.name);
+  EXPECT_EQ(at_least, (std::vector<std::string>{"first_uplift", "min_overturning_safety", "min_sliding_safety", "min_compression"}));
 }
 
 TEST(VerdictCriteria, WhatIsRefused) {

@@ -40,7 +40,7 @@ inline constexpr auto verdict_quantities = [] {
       {"full_loss_of_contact", "s", "time with full loss of contact: no base has any contact", "full loss of contact", run},
       {"max_uplifted_ratio", "1", "largest share of the area with a gap", "uplifted area"},
       {"uplifted_time", "s", "time with a gap anywhere", "time with a gap"},
-      {"first_uplift", "s", "when a gap opens first", "first opening"},
+      {"first_uplift", "s", "when a gap opens first", "first opening", base, at_least},
       {"max_opening", "m", "largest gap", "largest gap", base_and_wall},
       {"max_slip", "m", "largest slip", "largest slip", wall},
       {"max_toe_pressure", "Pa", "largest pressure of all points", "largest pressure", base_and_wall},
