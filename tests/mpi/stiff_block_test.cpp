@@ -59,17 +59,21 @@ Vector precondition(const System& system, const Vector& x) {
   return result;
 }
 
+LocalRows rows_of(const Sparse& a) {
+  LocalRows rows;
+  rows.start.assign(a.outerIndexPtr(), a.outerIndexPtr() + a.cols() + 1);
+  rows.column.assign(a.innerIndexPtr(), a.innerIndexPtr() + a.nonZeros());
+  rows.value.assign(a.valuePtr(), a.valuePtr() + a.nonZeros());
+  return rows;
+}
+
 /// One process, so that its answers can be looked at: the others take no part.
 TEST(StiffBlock, PreconditionerIsSymmetricAndTheInverseOfItsBlock) {
   constexpr int n = 40;
   const Sparse a = chain(n, 1e4);
   const std::vector<PetscInt> stiff{10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20};
-  LocalRows rows;
-  rows.start.assign(a.outerIndexPtr(), a.outerIndexPtr() + n + 1);
-  rows.column.assign(a.innerIndexPtr(), a.innerIndexPtr() + a.nonZeros());
-  rows.value.assign(a.valuePtr(), a.valuePtr() + a.nonZeros());
   System system(PETSC_COMM_SELF);
-  ASSERT_EQ(system.set(std::move(rows), n).why, "");
+  ASSERT_EQ(system.set(rows_of(a), n).why, "");
   system.set_stiff(stiff);
   ASSERT_EQ(system.prepare(SolverOptions("-ksp_type cg -pc_type jacobi")).why, "");
   EXPECT_NE(system.remark().find("11 unknowns"), std::string::npos) << system.remark();
@@ -92,6 +96,19 @@ TEST(StiffBlock, PreconditionerIsSymmetricAndTheInverseOfItsBlock) {
     EXPECT_NEAR(x.dot(precondition(system, y)), y.dot(precondition(system, x)), 1e-12 * m.norm());
     EXPECT_GT(x.dot(precondition(system, x)), 0);
   }
+}
+
+/// Then the iterations tell why the matrix is none.
+TEST(StiffBlock, WithoutAFactorTheDiagonalStays) {
+  constexpr int n = 40;
+  Sparse a = chain(n, 1e4);
+  a.coeffRef(12, 13) = a.coeffRef(13, 12) = -1.5;  // stiffer than both ends together
+  System system(PETSC_COMM_SELF);
+  ASSERT_EQ(system.set(rows_of(a), n).why, "");
+  system.set_stiff({12, 13});
+  EXPECT_NE(system.prepare(SolverOptions("-ksp_type cg -pc_type jacobi")).why.find("INDEFINITE"), std::string::npos);
+  EXPECT_NE(system.remark().find("2 unknowns of stiff parts are not factorised"), std::string::npos) << system.remark();
+  EXPECT_LE((precondition(system, Vector::Unit(n, 12)) - Vector::Unit(n, 12)).norm(), 1e-15);
 }
 
 /// A building of bricks on soil, or a mast of beams on a rigid raft, and a step of 5 ms.
