@@ -95,7 +95,7 @@ rayleigh = [{ frequency = 1, ratio = 0.04 }, { frequency = 8, ratio = 0.04 }]
 type = "static"
 [[stage]]
 type = "dynamic"
-duration = 0.05
+duration = 0.03
 step = 5e-3
 )";
 
@@ -105,7 +105,7 @@ Mesh tetrahedra() {
   const auto part = [](int i, int j, int k) {
     const auto within = [](int at, int first, int end) { return at >= first && at < end; };
     if (k < deep) return 0;
-    if (within(i, 4, 7) && within(j, 4, 7)) return 1;
+    if (within(i, 4, 6) && within(j, 4, 6)) return 1;
     return k == deep && within(i, 1, 3) && within(j, 1, 3) ? 2 : -1;
   };
   const auto face = [](int of, Direction direction, int other) -> std::string {
