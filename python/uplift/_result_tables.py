@@ -81,6 +81,7 @@ class ResultTables(TableStore):
         *,
         uplifted_ratio_thresholds: Optional[Sequence[Quantity]] = None,
         window: Optional[Quantity] = None,
+        top: Optional[str] = None,
         step_check: Optional[bool] = None,
         criterion: Optional[Sequence[Mapping[str, Any]]] = None,
     ) -> None:
@@ -91,11 +92,14 @@ class ResultTables(TableStore):
             window: forces, moments and pressures of the verdict are means over this time (or over the step where that
                 is longer), so that the peak of an impact does not depend on the step; the default passes motions up to
                 10 Hz within 2 % [s], >= 0 s; default 0.01.
+            top: node that is the top, whose motion and drift are numbers of the verdict; absent: the highest node (or
+                centre of mass of a rigid body) of what stands on the base, of equally high ones that nearest to its
+                middle.
             step_check: `uplift run` also runs the case with twice the step, and states by how much every number of the
                 verdict changes: a third of the total time; default True.
             criterion: limits.
         """
-        self._set("verdict", {"uplifted_ratio_thresholds": uplifted_ratio_thresholds, "window": window, "step_check": step_check, "criterion": criterion})
+        self._set("verdict", {"uplifted_ratio_thresholds": uplifted_ratio_thresholds, "window": window, "top": top, "step_check": step_check, "criterion": criterion})
 
     def variant(
         self,

@@ -104,6 +104,8 @@ source = "specification, 4.2"
         self.assertIn("criterion not met: uplifted area of soil", done.stdout)
         summary = self.summary("r")
         verdict, (run,) = summary["verdict"], summary["runs"]
+        self.assertEqual(verdict["top"], {"node": "top", "centre_of_mass": False, "place": [0, 5]})
+        self.assertRegex(done.stdout, r"Top motion +[\d.]+ mm .*node top, at ")
         (soil,) = verdict["interfaces"]
         self.assertAlmostEqual(soil["static_force"]["value"], 1e6, delta=1)
         numbers = soil["numbers"]

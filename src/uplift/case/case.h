@@ -158,7 +158,9 @@ struct BuiltCase {
   // N: resultant, against the mean normal of the first interface, of the dead loads on everything that is connected to its upper side (the
   // soil too where the surface ends inside it)
   double weight = 0;
-  int top = -1, base = -1;      // nodes whose motion is shown: the highest mass, the first interface's body
+  // Nodes whose motion is shown: the one that the case names, or the highest one of the structure; the first interface's body
+  int top = -1, base = -1;
+  Vec3 top_arm = Vec3::Zero();  // m, from the node `top` to the top: the centre of mass of a rigid body that has no node as high, else zero
   Dof sway = ux;                // horizontal direction that is shown: in space that of the larger loads
   std::set<int> bare;           // nodes that stand outside of what their cut cells fill
   std::vector<BeamLine> beams;  // every beam of the case, one of a group in as many lines as it takes
@@ -166,6 +168,8 @@ struct BuiltCase {
   int top_sway() const { return top < 0 ? -1 : model.at(top, sway); }
   int base_lift() const { return base < 0 ? -1 : model.at(base, model.space.dof(model.space.up())); }
   int base_turn() const { return base < 0 ? -1 : model.at(base, model.space.dimension == 2 ? rz : sway == ux ? ry : rx); }
+  Place top_place() const { return model.nodes[static_cast<std::size_t>(top)].position + top_arm; }  // where there is one
+  std::string name_of_top() const;  // "node t", "the centre of mass of m"; empty: there is none
   /// The interface's moment and rotation that go with the sway.
   Request::Kind base_moment() const;
   Request::Kind base_rotation() const;

@@ -2,12 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <map>
+#include <optional>
 #include <set>
 #include <utility>
+#include <vector>
+
+#include "uplift/case/schema/case_input.h"
 
 namespace uplift {
 namespace {
+
+constexpr double equal = 1e-9;  // m
 
 /// A node of the mesh that is shown gets a name that can be remembered, and is still found by its number.
 void rename_shown(int node, const std::string& name, Model& model) {
@@ -15,57 +21,134 @@ void rename_shown(int node, const std::string& name, Model& model) {
   if (shown.name.starts_with("mesh.") && model.find_node(name) < 0) model.second_names.emplace(std::exchange(shown.name, name), node);
 }
 
-/// The highest node, of equally high ones that nearest to a place; `among` leaves nodes out where it is 0, empty: none. `highest`: a node
-/// to begin with, -1: none.
-int highest_node(const CaseNames& names, const std::set<int>& bare, const Vec3& near, const std::vector<char>& among, int highest = -1) {
-  const int up = names.space.up();
-  const auto position = [&](int node) -> const Place& { return names.positions[static_cast<std::size_t>(node)]; };
-  for (int node = 0; node < static_cast<int>(names.positions.size()); ++node) {
-    if (bare.contains(node) || (!among.empty() && !among[static_cast<std::size_t>(node)])) continue;
-    const double higher = highest < 0 ? 1 : position(node)[up] - position(highest)[up];
-    const bool nearer = highest >= 0 && (position(node) - near).norm() < (position(highest) - near).norm();
-    if (higher > 1e-9 || (higher > -1e-9 && nearer)) highest = node;
-  }
-  return highest;
+/// Springs and dashpots between two nodes.
+bool is_connector(const Element& element) {
+  return element.nodes().size() == 2 && !element.has_axis() && element.continuum() == nullptr;
 }
 
-/// Without an interface: the highest node, nearest to the middle of all. Else the highest one that is connected to the upper side of
-/// the first interface, nearest to the middle of that, and the upper node in its middle.
-void find_shown_mesh_nodes(const CaseNames& names, BuiltCase& built) {
-  if (built.facts.empty()) {
-    Vec3 middle = Vec3::Zero();
-    for (const Place& place : names.positions) middle += place / static_cast<double>(names.positions.size());
-    built.top = highest_node(names, built.bare, middle, {}, built.top);
-    return rename_shown(built.top, "top", built.model);
-  }
-  const std::vector<int>& upper = built.facts.front().upper;
-  const Vec3 middle = built.model.interfaces.front().reference;
-  const auto distance = [&](int node) { return (names.positions[static_cast<std::size_t>(node)] - middle).norm(); };
-  if (built.base < 0) built.base = *std::ranges::min_element(upper, {}, distance);
-  if (built.top < 0) built.top = highest_node(names, built.bare, middle, part_of(built.model, upper));
-  rename_shown(built.top, "top", built.model);
-  rename_shown(built.base, "base", built.model);
+/// Of its translation.
+double mass_of(const Element& element) {
+  Matrix mass;
+  element.form({.mass = &mass});
+  double sum = 0;
+  for (Index i = 0; i < mass.rows(); i += element.unknowns_per_node())
+    for (Index j = 0; j < mass.cols(); j += element.unknowns_per_node()) sum += mass(i, j);
+  return sum;
 }
 
-/// The node of the highest mass (the largest of equally high ones), and the body of the first interface. With a mesh, whose cells have
-/// masses of their own, only point masses count.
-void find_shown_nodes(const Case& read, const CaseNames& names, BuiltCase& built) {
-  double height = -std::numeric_limits<double>::infinity(), largest = 0;
-  const auto look = [&](int node, double mass) {
-    const double y = names.positions[static_cast<std::size_t>(node)][names.space.up()];
-    if (y > height || (y == height && mass > largest)) {
-      height = y;
-      largest = mass;
-      built.top = node;
+/// What stands on the first base, and on other bases there; without an interface everything. Of the nodes.
+std::vector<char> structure_of(const BuiltCase& built) {
+  if (built.facts.empty()) return std::vector<char>(built.model.nodes.size(), 1);
+  std::vector<int> from = built.facts.front().upper;
+  std::vector<char> part = part_of(built.model, from);
+  const auto is_in = [&](int node) { return part[static_cast<std::size_t>(node)] != 0; };
+  for (bool more = true; more;) {
+    more = false;
+    for (const InterfaceFacts& facts : built.facts)
+      if (facts.role == Role::base && std::ranges::any_of(facts.lower, is_in) && !std::ranges::all_of(facts.upper, is_in))
+        from.insert(from.end(), facts.upper.begin(), facts.upper.end()), more = true;
+    if (more) part = part_of(built.model, from);
+  }
+  return part;
+}
+
+/// Takes out of a structure what hangs on it by springs alone: a piece beside one other that has a height of its own, lighter than a tenth
+/// of the structure. A storey on springs stands on one without a height, or is no lighter.
+void take_out_equipment(const BuiltCase& built, std::vector<char>& structure) {
+  constexpr double light = 0.1;
+  const Model& model = built.model;
+  const std::vector<int> pieces = pieces_of(model, [](const Element& element) { return !is_connector(element); });
+  const auto piece = [&](int node) { return pieces[static_cast<std::size_t>(node)]; };
+  std::map<int, std::set<int>> beside;
+  for (const auto& element : model.elements)
+    if (const auto nodes = element->nodes(); is_connector(*element) && piece(nodes[0]) != piece(nodes[1]))
+      beside[piece(nodes[0])].insert(piece(nodes[1])), beside[piece(nodes[1])].insert(piece(nodes[0]));
+  if (!built.facts.empty())
+    for (const int node : built.facts.front().upper) beside.erase(piece(node));
+  if (beside.empty()) return;
+  double whole = 0;
+  std::map<int, double> masses;
+  for (const auto& element : model.elements)
+    if (const int node = element->nodes()[0]; structure[static_cast<std::size_t>(node)]) {
+      const double mass = mass_of(*element);
+      whole += mass;
+      masses[piece(node)] += mass;
     }
+  std::map<int, std::pair<double, double>> heights;
+  for (int node = 0; node < static_cast<int>(pieces.size()); ++node) {
+    const double height = model.nodes[static_cast<std::size_t>(node)].position.dot(model.up());
+    const auto [found, first] = heights.try_emplace(piece(node), height, height);
+    if (!first) found->second = {std::min(found->second.first, height), std::max(found->second.second, height)};
+  }
+  std::set<int> hung;
+  for (const auto& [each, others] : beside)
+    if (const auto& [least, most] = heights[*others.begin()]; others.size() == 1 && most - least > equal && masses[each] < light * whole)
+      hung.insert(each);
+  for (std::size_t node = 0; node < structure.size(); ++node)
+    if (hung.contains(pieces[node])) structure[node] = 0;
+}
+
+/// Where a node that is no ground stands, or the centre of mass of a rigid body.
+struct Candidate {
+  int node = -1;
+  Vec3 arm = Vec3::Zero();
+};
+
+std::vector<Candidate> candidates(const CaseInput& input, const CaseNames& names, const BuiltCase& built) {
+  const Model& model = built.model;
+  std::vector<char> structure = structure_of(built);
+  take_out_equipment(built, structure);
+  const auto moves_freely = [&](int node) {
+    for (int k = 0; k < model.space.dimension; ++k)
+      if (Sparse::InnerIterator(model.expansion, model.at(node, model.space.dof(k)))) return true;
+    return false;
   };
-  for (const CaseMass& mass : read.input->masses) look(names.node(mass.node), mass.mass.value_or(0));
-  for (const CaseBody& body : read.input->bodies)
-    if (!read.mesh && body.mass > 0) look(master_of(body, names), body.mass);
-  if (built.top < 0 && !read.mesh)
-    for (const CaseNode& node : read.input->nodes) look(names.nodes.find(node.name, node.where(), node.path()), 0);
-  if (!built.facts.empty() && !built.facts[0].body.empty()) built.base = built.model.find_node(built.facts[0].body);
-  if (read.mesh) find_shown_mesh_nodes(names, built);
+  std::vector<Candidate> found;
+  for (int node = 0; node < static_cast<int>(structure.size()); ++node)
+    if (structure[static_cast<std::size_t>(node)] && !built.bare.contains(node) && moves_freely(node)) found.push_back({node});
+  for (const CaseBody& body : input.bodies)
+    if (const int node = master_of(body, names); body.centre && body.mass > 0 && structure[static_cast<std::size_t>(node)])
+      found.push_back({node, *body.centre - names.positions[static_cast<std::size_t>(node)]});
+  return found;
+}
+
+/// The highest one, of equally high ones that nearest to a place, of equally near ones the first: nodes before centres of mass.
+Candidate highest(const std::vector<Candidate>& among, const Vec3& near, const Model& model) {
+  const Vec3 up = model.up();
+  const auto place = [&](const Candidate& each) { return Vec3(model.nodes[static_cast<std::size_t>(each.node)].position + each.arm); };
+  Candidate best;
+  for (const Candidate& each : among) {
+    const double higher = best.node < 0 ? 1 : (place(each) - place(best)).dot(up);
+    const bool nearer = best.node >= 0 && (place(each) - near).norm() < (place(best) - near).norm() - equal;
+    if (higher > equal || (higher > -equal && nearer)) best = each;
+  }
+  return best;
+}
+
+void find_top(const Case& read, const CaseNames& names, BuiltCase& built) {
+  if (const std::optional<NameUsed>& named = read.input->verdict.top) {
+    built.top = names.node(*named);
+    return;
+  }
+  const Model& model = built.model;
+  Vec3 middle = Vec3::Zero();
+  if (!built.facts.empty()) middle = model.interfaces.front().reference;
+  if (built.facts.empty())
+    for (const Node& node : model.nodes) middle += node.position / static_cast<double>(model.nodes.size());
+  const Candidate found = highest(candidates(*read.input, names, built), middle, model);
+  built.top = found.node;
+  built.top_arm = found.arm;
+}
+
+/// The body of the first interface; on a mesh without one the upper node in the middle of the interface.
+void find_base(const Case& read, BuiltCase& built) {
+  if (built.facts.empty()) return;
+  const InterfaceFacts& first = built.facts.front();
+  if (!first.body.empty()) built.base = built.model.find_node(first.body);
+  if (!read.mesh || built.base >= 0 || first.upper.empty()) return;
+  const Vec3 middle = built.model.interfaces.front().reference;
+  const auto distance = [&](int node) { return (built.model.nodes[static_cast<std::size_t>(node)].position - middle).norm(); };
+  built.base = *std::ranges::min_element(first.upper, {}, distance);
 }
 
 /// See BuiltCase::sway.
@@ -102,9 +185,18 @@ double weight_of(const BuiltCase& built) {
 
 void find_shown(const Case& read, const CaseNames& names, BuiltCase& built) {
   built.bare = names.bare;
-  find_shown_nodes(read, names, built);
+  find_base(read, built);
+  find_top(read, names, built);
+  if (built.top >= 0) rename_shown(built.top, "top", built.model);
+  if (built.base >= 0) rename_shown(built.base, "base", built.model);
   built.sway = sway_of(built.model);
   built.weight = weight_of(built);
+}
+
+std::string BuiltCase::name_of_top() const {
+  if (top < 0) return "";
+  const std::string& name = model.nodes[static_cast<std::size_t>(top)].name;
+  return top_arm.isZero(0) ? "node " + name : "the centre of mass of " + name;
 }
 
 Request::Kind BuiltCase::base_moment() const {

@@ -16,6 +16,10 @@ int Model::rows() const {
   return rows_of_all;
 }
 
+Vec3 Model::up() const {
+  return assembly.gravity.isZero(0) ? space.axis(space.up()) : Vec3(-assembly.gravity.normalized());
+}
+
 int Model::find_node(std::string_view name) const {
   for (std::size_t i = 0; i < nodes.size(); ++i)
     if (nodes[i].name == name) return static_cast<int>(i);

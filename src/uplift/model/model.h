@@ -134,10 +134,12 @@ struct Model {
   Sparse reduction() const { return expansion.transpose(); }       // T, made when it is asked for: in a large model it takes as much again
   Vector expand(const Vector& q) const;                            // T q
   int at(int node, Dof dof) const { return space.at(node, dof); }  // full unknown
-  int rows() const;                                                // interface rows, of all interfaces
-  int find_node(std::string_view name) const;                      // -1 when absent
-  std::string name_of(int full_unknown) const;                     // "top.ux"
-  std::string unknown_name(Index free) const;                      // of a free unknown; its number where it is no full one
+  /// Upwards, of length 1: against gravity, without gravity the vertical axis.
+  Vec3 up() const;
+  int rows() const;                             // interface rows, of all interfaces
+  int find_node(std::string_view name) const;   // -1 when absent
+  std::string name_of(int full_unknown) const;  // "top.ux"
+  std::string unknown_name(Index free) const;   // of a free unknown; its number where it is no full one
   /// Full displacement (derivative 0), velocity (1) or acceleration (2) of one full unknown from the free ones.
   double full(int full_unknown, const Vector& q, int derivative, MotionInstant at) const;
   /// All full unknowns at once.

@@ -18,7 +18,7 @@ constexpr double negligible = 0.1;  // of the base moment
 constexpr double noise = 1e-4;      // of the stabilising moment: a base that next to nothing tilts
 
 double height_of(const Model& model, int node) {
-  return model.nodes[static_cast<std::size_t>(node)].position[model.space.up()];
+  return model.nodes[static_cast<std::size_t>(node)].position.dot(model.up());
 }
 
 bool leaves_out(const RunPlan& plan) {
@@ -35,17 +35,26 @@ bool is_forced(const Model& model) {
 double swaying_weight(const BuiltCase& built) {
   const Model& model = built.model;
   if (built.top < 0 || built.base < 0 || built.facts.empty()) return 0;
-  const double foot = height_of(model, built.base), height = height_of(model, built.top) - foot;
+  const double foot = height_of(model, built.base), height = built.top_place().dot(model.up()) - foot;
   if (!(height > 0)) return 0;
   const std::vector<char> carried = part_of(model, built.facts.front().upper);
-  double sum = 0;
+  double sum = 0;  // N m
   for (std::size_t i = 0; i < model.time_loads.size(); ++i) {
     if (!model.time_loads[i].dead) continue;
     for (int node = 0; node < static_cast<int>(carried.size()); ++node)
       if (const double above = height_of(model, node) - foot; carried[static_cast<std::size_t>(node)] && above > 0)
-        sum -= model.assembly.loads[i].coeff(model.space.unknowns() * node + model.space.up()) * above / height;
+        for (int axis = 0; axis < model.space.dimension; ++axis)
+          sum -= model.assembly.loads[i].coeff(model.space.unknowns() * node + axis) * model.up()[axis] * above;
   }
-  return sum;
+  for (const auto& element : model.elements) {  // gravity acts at the centre of a mass, not at its node
+    const int node = element->nodes()[0];
+    if (!carried[static_cast<std::size_t>(node)] || element->first_moment().isZero(0)) continue;
+    Matrix mass;
+    element->form({.mass = &mass});
+    const double above = height_of(model, node) - foot, of_centre = above + element->first_moment().dot(model.up()) / mass(0, 0);
+    sum += mass(0, 0) * model.assembly.gravity.norm() * (std::max(of_centre, 0.0) - std::max(above, 0.0));
+  }
+  return sum / height;
 }
 
 std::optional<SecondOrderMoment> second_order_of(const BuiltCase& built, const RunResult& run, const VerdictNumbers& numbers) {

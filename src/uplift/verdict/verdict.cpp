@@ -236,7 +236,7 @@ void say_structure(const BuiltCase& built, Verdict& verdict) {
     const std::string change = number->change ? compared(*number) + ", " : "";
     verdict.facts.push_back({label, text_of(*number), change + detail + at(*number), tile, format_step_change(*number)});
   };
-  fact("max_top_motion", "Top motion", "", true);
+  fact("max_top_motion", "Top motion", built.name_of_top() + ", ", true);
   fact("max_drift", "Drift of the top", "relative to " + (verdict.numbers.bases() > 1 ? built.facts.front().name : "the base") + ", ",
        false);
   fact("max_drift_without_rotation", "Drift without base rotation", "deformation of the structure, ", false);
@@ -259,9 +259,7 @@ void say_compared(const BuiltCase& built, const RunResult& bonded, Verdict& verd
   };
   for (const InterfaceVerdict& said : bases_of(verdict))
     add("largest base moment" + of_interface(verdict, said) + per_metre(built), find_number(said.numbers, "max_moment"), "N m");
-  if (built.top >= 0)
-    add(fmt::format("largest motion of {}", built.model.nodes[static_cast<std::size_t>(built.top)].name),
-        find_number(verdict.numbers.whole, "max_top_motion"), "m");
+  if (built.top >= 0) add("largest motion of " + built.name_of_top(), find_number(verdict.numbers.whole, "max_top_motion"), "m");
   if (!parts.empty()) verdict.paragraphs.push_back(fmt::format("Compared with the bonded model, {}.", fmt::join(parts, "; ")));
 }
 

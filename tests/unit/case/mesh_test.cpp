@@ -133,6 +133,19 @@ TEST(CaseMesh, DeadLoadIsThatOfTheBlockAlone) {
               (block_density * gravity * height + 500) * 2, 1e-6);
 }
 
+TEST(CaseMesh, APointMassAtALowNodeIsNotTheTop) {
+  const std::string text = column_text(3e7, side_supports);
+  const BuiltCase plain = build(read_text(text, column(Cell::quad4)), RunSpec{});
+  std::string low;  // a node of the underside of the block
+  for (const auto& [name, node] : plain.model.second_names)
+    if (node == plain.base) low = name;
+  ASSERT_FALSE(low.empty());
+  const std::string loaded = text + "[[mass]]\nnode = \"" + low + "\"\nmass = 1000\n";
+  const BuiltCase built = build(read_text(loaded, column(Cell::quad4)), RunSpec{});
+  EXPECT_EQ(built.top, plain.top);
+  EXPECT_NEAR(built.top_place().y(), height, 1e-12);
+}
+
 TEST(CaseMesh, NodesThatAreShownAreFoundByTheirNumbersToo) {
   const std::string text = column_text(3e7, side_supports);
   const BuiltCase built = build(read_text(text, column(Cell::quad4)), RunSpec{});

@@ -71,6 +71,19 @@ TEST(SecondOrderEffects, SwayingWeight) {
   EXPECT_NEAR(swaying_weight(built_of(tower(another + shaken, "", law, changed))), (top_mass + 0.5 * 1e4) * gravity, 1e-6);
 }
 
+/// A rigid block of 24 m whose master is at its foot: the weight is at the centre, half as high as the top, or at the top itself.
+TEST(SecondOrderEffects, TheWeightOfABodyIsAtItsCentre) {
+  const auto block = [](const std::string& slaves) {
+    return "title = \"block\"\n[nodes]\nfoot = [0, 0]\nhigh = [0, 24]\n[[rigid]]\nnode = \"foot\"\n" + slaves +
+           "mass = 72000\ninertia = 1e6\ncentre = [0, 12]\n[[interface]]\nname = \"soil\"\nfooting = { body = \"foot\", width = 6, points "
+           "= 5 }\n" +
+           law + weight + "[[stage]]\ntype = \"static\"\n";
+  };
+  EXPECT_NEAR(swaying_weight(built_of(block("slaves = [\"high\"]\n"))), 72000 * gravity / 2, 1e-6);
+  const std::string held = "[[support]]\nnode = \"high\"\nfixed = [\"ux\", \"uy\", \"rz\"]\n";
+  EXPECT_NEAR(swaying_weight(built_of(block("") + held)), 72000 * gravity, 1e-6);
+}
+
 /// S = 333.54 kN x 1.5 m = 500.31 kN m. Under M = 400 kN m 100.31 kN m are left. W d with W = 235.44 kN: 35.3 kN m at 0.15 m is 8.8 % of
 /// M; 94.2 kN m at 0.4 m, 23.5 %; 117.7 kN m at 0.5 m is more than what is left; 259.0 kN m at 1.1 m more than half of S.
 TEST(SecondOrderEffects, ByHand) {

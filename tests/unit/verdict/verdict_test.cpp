@@ -202,7 +202,7 @@ TEST(VerdictTest, ComparesWithTheBondedModel) {
   const Verdict verdict = judge(footing(), result_with(1.2e6, 0.6), &bonded);
   std::string all;
   for (const std::string& paragraph : verdict.paragraphs) all += paragraph + "\n";
-  EXPECT_NE(all.find("Compared with the bonded model, largest motion of top: +100 % (20.0 mm instead of 10.0 mm)."), std::string::npos)
+  EXPECT_NE(all.find("Compared with the bonded model, largest motion of node top: +100 % (20.0 mm instead of 10.0 mm)."), std::string::npos)
       << all;
 }
 

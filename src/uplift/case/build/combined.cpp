@@ -1,16 +1,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "uplift/case/build/output.h"
+#include "uplift/interface/interface.h"
 
 namespace uplift {
 namespace {
 
 using Column = Request::Kind;
 using Terms = std::vector<CombinedRequest::Term>;
+constexpr double no_component = 1e-12;  // of an axis that does not have a direction
 /// A sum of columns, empty: zero. Nothing where a column is needed that is not recorded.
 using Sum = std::optional<Terms>;
 
@@ -25,7 +28,21 @@ Sum displacement(const BuiltCase& built, int node, Dof dof, double factor) {
   return moves(built.model, unknown) ? std::nullopt : Sum(Terms());
 }
 
-/// What moves the top along an axis like a rigid body on the base, `h` above it. In space: along x about y, along y about x.
+/// The displacement along a direction of a point that is rigidly offset from a node.
+Sum displacement(const BuiltCase& built, int node, const Vec3& arm, const Vec3& direction) {
+  const Space space = built.model.space;
+  Terms sum;
+  for (int k = 0; k < space.unknowns(); ++k) {
+    const double factor = space.motion(k, arm).dot(direction);
+    if (std::abs(factor) < no_component * (space.is_rotation(k) ? arm.norm() : 1) || factor == 0) continue;
+    const Sum part = displacement(built, node, space.dof(k), factor);
+    if (!part) return std::nullopt;
+    sum.insert(sum.end(), part->begin(), part->end());
+  }
+  return sum;
+}
+
+/// What moves the top along a horizontal axis like a rigid body on the base, `h` above it. In space: along x about y, along y about x.
 Sum turned(const BuiltCase& built, int axis, double h) {
   const bool plane = built.model.space.dimension == 2, of_nodes = built.facts.front().upper.size() > 1;
   const bool second = !plane && axis == 0;
@@ -43,14 +60,14 @@ void take_off(Terms& from, const Terms& what) {
 
 /// Motion of the top relative to the base; `rigid`: without what the rotation of the base makes of it.
 std::optional<CombinedRequest> drift(const BuiltCase& built, std::string_view name, bool rigid) {
-  const Space space = built.model.space;
-  const auto height = [&](int node) { return built.model.nodes[static_cast<std::size_t>(node)].position[space.up()]; };
+  const Model& model = built.model;
+  const double height = (built.top_place() - model.nodes[static_cast<std::size_t>(built.base)].position).dot(model.up());
   CombinedRequest made{.name = std::string(name)};
-  for (int axis = 0; axis < space.dimension; ++axis) {
-    if (axis == space.up()) continue;
-    Sum sum = displacement(built, built.top, space.dof(axis), 1);
-    const Sum base = displacement(built, built.base, space.dof(axis), 1);
-    const Sum turns = rigid ? turned(built, axis, height(built.top) - height(built.base)) : Sum(Terms());
+  for (int axis = 0; axis < model.space.dimension - 1; ++axis) {
+    const Vec3 along = local_axis(model.space, model.up(), axis);
+    Sum sum = displacement(built, built.top, built.top_arm, along);
+    const Sum base = displacement(built, built.base, Vec3::Zero(), along);
+    const Sum turns = rigid ? turned(built, axis, height) : Sum(Terms());
     if (!sum || !base || !turns) return std::nullopt;
     take_off(*sum, *base);
     take_off(*sum, *turns);
@@ -86,12 +103,12 @@ void add_combined(BuiltCase& built) {
   if (built.top < 0) return;
   const Space space = built.model.space;
   CombinedRequest along{.name = std::string(combined_top)}, up{.name = std::string(combined_top_up)};
-  for (int axis = 0; axis < space.dimension; ++axis)
-    if (Sum sum = recorded(built.plan, Column::displacement, built.model.at(built.top, space.dof(axis)), 1))
+  for (int axis = 0; axis < space.dimension; ++axis)  // the last one is the vertical
+    if (Sum sum = displacement(built, built.top, built.top_arm, local_axis(space, built.model.up(), axis)); sum && !sum->empty())
       (axis == space.up() ? up : along).components.push_back(std::move(*sum));
   for (CombinedRequest* each : {&along, &up})
     if (!each->components.empty()) built.plan.combined.push_back(std::move(*each));
-  if (built.base < 0 || built.top == built.base || built.facts.empty()) return;
+  if (built.base < 0 || (built.top == built.base && built.top_arm.isZero(0)) || built.facts.empty()) return;
   if (auto made = drift(built, combined_drift, false)) built.plan.combined.push_back(std::move(*made));
   if (built.bases() > 1) return;  // each base turns by itself: none of their rotations is that of the structure
   if (auto made = drift(built, combined_bending, true)) built.plan.combined.push_back(std::move(*made));

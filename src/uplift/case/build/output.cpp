@@ -235,6 +235,8 @@ void add_requests(const Case& read, const CaseNames& names, BuiltCase& built) {
     std::vector<std::string_view> top{"ux", "vx", "uy"}, base{"ux", "uy", "rz", "vy", "vrz"}, base_too{"rz", "vy", "vrz"};
     if (!plane)
       top = {"ux", "uy", "uz", "vx", "vy"}, base = {"ux", "uy", "uz", "rx", "ry", "rz", "vz"}, base_too = {"rx", "ry", "rz", "vz"};
+    if (!built.top_arm.isZero(0) && built.top != built.base)  // which turns about the node
+      for (int k = model.space.dimension; k < model.space.unknowns(); ++k) top.push_back(to_string(model.space.dof(k)));
     if (built.top >= 0) add_node(model, built.top, top, requests);
     if (built.base >= 0) add_node(model, built.base, built.base != built.top ? base : base_too, requests);
     // the drift of the top needs the tilt of the base, which nodes of solids do not have

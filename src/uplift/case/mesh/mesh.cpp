@@ -277,7 +277,7 @@ double thickness_of(const CaseSolids& solids, const std::vector<FacePair>& faces
   return most;
 }
 
-std::vector<char> part_of(const Model& model, const std::vector<int>& nodes) {
+std::vector<int> pieces_of(const Model& model, const std::function<bool(const Element&)>& joins) {
   std::vector<int> parent(model.nodes.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](int node) {
@@ -286,7 +286,8 @@ std::vector<char> part_of(const Model& model, const std::vector<int>& nodes) {
   };
   const auto join = [&](int a, int b) { parent[at(root(a))] = root(b); };
   for (const auto& element : model.elements)
-    for (const int node : element->nodes()) join(node, element->nodes()[0]);
+    if (joins(*element))
+      for (const int node : element->nodes()) join(node, element->nodes()[0]);
   const Sparse rows = model.assembly.constraints.transpose();  // a column for each constraint
   for (int row = 0; row < static_cast<int>(rows.cols()); ++row) {
     int first = -1;
@@ -296,9 +297,16 @@ std::vector<char> part_of(const Model& model, const std::vector<int>& nodes) {
       join(node, first);
     }
   }
+  std::vector<int> pieces(model.nodes.size());
+  for (int node = 0; node < static_cast<int>(pieces.size()); ++node) pieces[at(node)] = root(node);
+  return pieces;
+}
+
+std::vector<char> part_of(const Model& model, const std::vector<int>& nodes) {
+  const std::vector<int> pieces = pieces_of(model, [](const Element&) { return true; });
   std::vector<char> started(model.nodes.size(), 0), part(model.nodes.size(), 0);
-  for (const int node : nodes) started[at(root(node))] = 1;
-  for (int node = 0; node < static_cast<int>(part.size()); ++node) part[at(node)] = started[at(root(node))];
+  for (const int node : nodes) started[at(pieces[at(node)])] = 1;
+  for (std::size_t node = 0; node < part.size(); ++node) part[node] = started[at(pieces[node])];
   return part;
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -93,6 +94,9 @@ double thickness_of(const CaseSolids& solids, const std::vector<CutFace>& faces,
 /// the surface.
 double thickness_of(const CaseSolids& solids, const std::vector<FacePair>& faces, const CaseSurface& surface);
 
+/// The piece of every node of the model, a number that all nodes have that hang together by rigid bodies, ties, inextensible beams and
+/// those elements that join their nodes.
+std::vector<int> pieces_of(const Model& model, const std::function<bool(const Element&)>& joins);
 /// Which nodes of the model hang together with the given ones by elements, rigid bodies, ties and inextensible beams.
 std::vector<char> part_of(const Model& model, const std::vector<int>& nodes);
 

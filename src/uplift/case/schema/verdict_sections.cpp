@@ -67,6 +67,11 @@ const Section& verdict_section() {
               "peak of an impact does not depend on the step; the default passes motions up to 10 Hz within 2 %")
            .nonnegative()
            .standard(0.01),
+       text("top",
+            "node that is the top, whose motion and drift are numbers of the verdict; absent: the highest node (or centre of mass of a "
+            "rigid "
+            "body) of what stands on the base, of equally high ones that nearest to its middle")
+           .optional(),
        flag("step_check",
             "`uplift run` also runs the case with twice the step, and states by how much every number of the verdict changes: a third of "
             "the "
@@ -77,7 +82,8 @@ const Section& verdict_section() {
 }
 
 CaseVerdict case_verdict(const Values& table) {
-  CaseVerdict verdict{table.number("window"), table.numbers("uplifted_ratio_thresholds"), table.flag("step_check"), {}};
+  CaseVerdict verdict{
+      table.number("window"), name_if(table, "top"), table.numbers("uplifted_ratio_thresholds"), table.flag("step_check"), {}};
   for (const Values& criterion : table.tables("criterion")) verdict.criteria.push_back(case_criterion(criterion));
   return verdict;
 }

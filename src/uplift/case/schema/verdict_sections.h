@@ -21,7 +21,8 @@ struct CaseCriterion : CaseTable {
 
 const Section& verdict_section();
 struct CaseVerdict {
-  double window = 0.01;  // s
+  double window = 0.01;         // s
+  std::optional<NameUsed> top;  // node
   std::vector<double> thresholds;
   bool step_check = true;
   std::vector<CaseCriterion> criteria;

@@ -171,12 +171,13 @@ double sign_of_moment(const BuiltCase& built) {
 /// Motion of the top and of the base for some runs, in the order of the paper's figures 5 and 6.
 std::vector<View> motion_views(const BuiltCase& built) {
   std::vector<View> views;
-  if (built.top >= 0) {
+  if (built.top >= 0 && built.top_arm.isZero(0)) {  // a centre of mass has no column
     const std::string along = built.model.space.dimension == 2 ? "." : fmt::format(" along {}.", built.sway == ux ? "x" : "y");
-    views.push_back({"top_displacement", "response", "Displacement of the top", "Horizontal displacement of the highest mass" + along,
+    const std::string node = "node " + built.model.nodes[static_cast<std::size_t>(built.top)].name;
+    views.push_back({"top_displacement", "response", "Displacement of the top", "Horizontal displacement of " + node + along,
                      "Displacement", "m", Column::displacement, built.top_sway(), 1});
-    views.push_back({"top_velocity", "response", "Velocity of the top", "Horizontal velocity of the highest mass" + along, "Velocity",
-                     "m/s", Column::velocity, built.top_sway(), 1});
+    views.push_back({"top_velocity", "response", "Velocity of the top", "Horizontal velocity of " + node + along, "Velocity", "m/s",
+                     Column::velocity, built.top_sway(), 1});
   }
   if (built.base >= 0) {
     const auto title = [&](std::string_view of_the_base) { return title_of(of_the_base, built, 0); };  // `base` is a node of the first one
@@ -226,9 +227,10 @@ std::vector<View> interface_views(const BuiltCase& built) {
   return views;
 }
 
-/// Height of the top above the base [m]; 0 without them, and on several bases, whose moments are not those of the whole structure.
+/// Height of the top above the base [m]; 0 without them, where the top is no node, and on several bases, whose moments are not those of the
+/// whole structure.
 double height_of_top(const BuiltCase& built) {
-  if (built.top < 0 || built.base < 0 || built.model.interfaces.empty() || built.bases() > 1) return 0;
+  if (built.top < 0 || !built.top_arm.isZero(0) || built.base < 0 || built.model.interfaces.empty() || built.bases() > 1) return 0;
   const int up = built.model.space.up();
   return built.model.nodes[static_cast<std::size_t>(built.top)].position[up] - built.model.interfaces.front().reference[up];
 }

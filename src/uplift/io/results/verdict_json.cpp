@@ -196,6 +196,13 @@ void write_verdict_numbers(ResultWriter& out, const Verdict& verdict, const std:
     out.text("headline", verdict.headline, "first sentence of the report");
     out.text("consequence", verdict.consequence, "second sentence: comparison with the bonded model and with the criteria");
     write_step_check(out, verdict.step_check);
+    out.when(built && built->top >= 0).object("top", "what the motion of the top and the drift are those of", [&] {
+      const bool any = built && built->top >= 0;
+      const Place place = any ? built->top_place() : Place();
+      out.text("node", any ? built->model.nodes[static_cast<std::size_t>(built->top)].name : "", "node");
+      out.flag("centre_of_mass", any && !built->top_arm.isZero(0), "it is the centre of mass of the rigid body of this node, not the node");
+      out.numbers("place", {place.data(), any ? static_cast<std::size_t>(built->model.space.dimension) : 0}, "m", "where it stands");
+    });
     out.text("run", runs.empty() ? "" : runs.front().name, "name of the run that the verdict describes");
     out.flag("per_metre", built && built->is_strip(), "whether forces are per metre of depth");
     write_intervals(out, "full_loss_of_contact", numbers.full_loss, "intervals during which no base has any contact");
