@@ -10,30 +10,35 @@ using Weights = std::map<int, double>;  // of the full unknowns
 /// The vertical motion of the point `reference` of a rigid body, downwards, and its rotations.
 std::array<Weights, 3> weights_of_body(const Model& model, int node, const Place& reference) {
   const Space space = model.space;
-  const Vec3 up = space.axis(space.up()), arm = reference - model.nodes[static_cast<std::size_t>(node)].position;
+  const Vec3 up = model.up(), arm = reference - model.nodes[static_cast<std::size_t>(node)].position;
   std::array<Weights, 3> weights;
   for (int k = 0; k < space.unknowns(); ++k) weights[0][model.at(node, space.dof(k))] = -space.motion(k, arm).dot(up);
   if (space.dimension == 2) {
     weights[1][model.at(node, rz)] = 1;
   } else {
-    weights[1][model.at(node, rx)] = 1;
-    weights[2][model.at(node, ry)] = 1;
+    for (const int tilt : {0, 1})
+      for (int k = space.dimension; k < space.unknowns(); ++k)
+        weights[static_cast<std::size_t>(tilt) + 1][model.at(node, space.dof(k))] = local_axis(space, up, tilt).dot(space.axis(k));
   }
   return weights;
 }
 
+/// What a tilt about each horizontal axis lifts at a place: x in the plane, (y, -x) in space, along the axes at right angles to gravity.
+Vec3 lifted(const Model& model, const Vec3& place) {
+  const Space space = model.space;
+  const Vec3 up = model.up(), along(local_axis(space, up, 0).dot(place), local_axis(space, up, 1).dot(place), 0);
+  return space.dimension == 2 ? along : Vec3(along.y(), -along.x(), 0);
+}
+
 /// Plane u_up = c + tilt . shape that fits the nodes best, and its settlement at the point `reference`, which does not depend on how close
-/// the nodes stand here and there; shape is x in the plane, (y, -x) in space. No tilt where they do not span it.
+/// the nodes stand here and there; shape: see lifted(). No tilt where they do not span it.
 std::array<Weights, 3> weights_of_nodes(const Model& model, const std::vector<int>& nodes, const Place& reference) {
   const Space space = model.space;
   const auto count = static_cast<Index>(nodes.size()), tilts = static_cast<Index>(space.dimension - 1);
   Matrix shape(count, tilts);
   for (Index i = 0; i < count; ++i) {
-    const Vec3& x = model.nodes[static_cast<std::size_t>(nodes[static_cast<std::size_t>(i)])].position;
-    if (tilts == 1)
-      shape(i, 0) = x.x();
-    else
-      shape.row(i) << x.y(), -x.x();
+    const Vec3& place = model.nodes[static_cast<std::size_t>(nodes[static_cast<std::size_t>(i)])].position;
+    shape.row(i) = lifted(model, place).head(tilts).transpose();
   }
   const Vector mean = shape.colwise().mean().transpose();
   shape.rowwise() -= mean.transpose();
@@ -44,18 +49,16 @@ std::array<Weights, 3> weights_of_nodes(const Model& model, const std::vector<in
   const double det = tilts == 2 ? inertia(0, 0) * inertia(1, 1) - inertia(0, 1) * inertia(1, 0) : 0;
   if (det > 1e-12 * size * size) inverse << inertia(1, 1) / det, -inertia(0, 1) / det, -inertia(1, 0) / det, inertia(0, 0) / det;
   const Matrix slope = shape * inverse;
-  Vector away(tilts);
-  if (tilts == 1)
-    away << reference.x();
-  else
-    away << reference.y(), -reference.x();
-  away -= mean;
+  const Vector away = Vector(lifted(model, reference).head(tilts)) - mean;
+  const Vec3 up = model.up();
   std::array<Weights, 3> weights;
-  for (Index i = 0; i < count; ++i) {
-    const int unknown = model.at(nodes[static_cast<std::size_t>(i)], space.dof(space.up()));
-    weights[0][unknown] = -1.0 / static_cast<double>(count) - slope.row(i).dot(away);
-    for (Index k = 0; k < tilts; ++k) weights[static_cast<std::size_t>(k) + 1][unknown] = slope(i, k);
-  }
+  for (Index i = 0; i < count; ++i)
+    for (int axis = 0; axis < space.dimension; ++axis) {
+      if (up[axis] == 0) continue;
+      const int unknown = model.at(nodes[static_cast<std::size_t>(i)], space.dof(axis));
+      weights[0][unknown] = up[axis] * (-1.0 / static_cast<double>(count) - slope.row(i).dot(away));
+      for (Index k = 0; k < tilts; ++k) weights[static_cast<std::size_t>(k) + 1][unknown] = up[axis] * slope(i, k);
+    }
   return weights;
 }
 

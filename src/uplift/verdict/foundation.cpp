@@ -66,7 +66,7 @@ FoundationForces foundation_forces(const BuiltCase& built, const RunResult& run)
   std::vector<Mover> movers;
   const Place middle = middle_of_bases(built);
   for (const Interface& interface : model.interfaces) movers.emplace_back(interface, middle);
-  const Vec3 up = model.space.axis(model.space.up());
+  const Vec3 up = model.up();
   const auto shear_of = [&](std::size_t i, std::size_t k) { return without(movers[k].at(steps.at(i, k)).force, up); };
   const auto moment_of = [&](std::size_t i, std::size_t k) { return without(movers[k].at(steps.at(i, k)).moment, up); };
   const auto total = [&](std::size_t i, const auto& of) {
