@@ -56,6 +56,10 @@ bool BaseOverTime::carries(std::size_t step) const {
   return pressed() && -at(step).axial > least_share * rest.force;
 }
 
+double BaseOverTime::eccentricity(std::size_t step) const {
+  return carries(step) && shape.width[0] > 0 ? shape.eccentricity(thrust(step)) : nothing;
+}
+
 double BaseOverTime::eccentricity(std::size_t step, std::size_t axis) const {
   return carries(step) && shape.width[axis] > 0 ? shape.eccentricity(thrust(step), axis) : nothing;
 }

@@ -17,6 +17,7 @@ class BaseOverTime {
   bool pressed() const { return rest.force > 0; }
   double shear(std::size_t step) const;                           // N
   double moment(std::size_t step) const;                          // N m
+  double eccentricity(std::size_t step) const;                    // BaseShape::eccentricity
   double eccentricity(std::size_t step, std::size_t axis) const;  // e/B along t1 or t2
   double overturning(std::size_t step) const;                     // safety against overturning
   double sliding(std::size_t step) const;                         // safety against sliding

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <ranges>
 
 namespace uplift {
@@ -33,20 +34,35 @@ std::vector<Point> convex_hull(std::vector<Point> points, double flat) {
 }
 
 /// Direction of the side of a rectangle that is within 45 degrees of the first axis, of a square turned by 45 degrees the one
-/// counter-clockwise from it; the first axis for other outlines.
-Point side_of_rectangle(const std::vector<Point>& hull) {
+/// counter-clockwise from it; nothing for other outlines.
+std::optional<Point> side_of_rectangle(const std::vector<Point>& hull) {
   constexpr double right_angle = 1e-6;  // its cosine at most
   const auto side = [&hull](std::size_t i) -> Point {
     const Point &from = hull[i % 4], &to = hull[(i + 1) % 4];
     const double length = std::hypot(to[0] - from[0], to[1] - from[1]);
     return {(to[0] - from[0]) / length, (to[1] - from[1]) / length};
   };
-  if (hull.size() != 4) return {1, 0};
+  if (hull.size() != 4) return std::nullopt;
   for (std::size_t i = 0; i < 4; ++i)
-    if (const Point a = side(i), b = side(i + 1); std::abs(a[0] * b[0] + a[1] * b[1]) > right_angle) return {1, 0};
+    if (const Point a = side(i), b = side(i + 1); std::abs(a[0] * b[0] + a[1] * b[1]) > right_angle) return std::nullopt;
   for (std::size_t i = 0; i < 4; ++i)  // one direction of four is within -45 to 45 degrees, the upper end included
     if (const Point a = side(i); a[0] > 0 && a[1] <= a[0] * (1 + right_angle) && a[1] > -a[0] * (1 - right_angle)) return a;
-  return {1, 0};
+  return Point{1, 0};
+}
+
+/// Diameter of the circle on which the corners lie; nothing for other outlines. The nodes of a mesh are given with few digits.
+std::optional<double> diameter_of(const std::vector<Point>& hull) {
+  constexpr double on_circle = 1e-3;
+  constexpr std::size_t fewest = 12;
+  if (hull.size() < fewest) return std::nullopt;
+  Point middle{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto [least, most] = std::ranges::minmax(hull | std::views::transform([k](const Point& point) { return point[k]; }));
+    middle[k] = (least + most) / 2;
+  }
+  const auto [least, most] = std::ranges::minmax(
+      hull | std::views::transform([&](const Point& point) { return std::hypot(point[0] - middle[0], point[1] - middle[1]); }));
+  return most - least <= on_circle * most ? std::optional(2 * most) : std::nullopt;
 }
 
 }  // namespace
@@ -84,10 +100,13 @@ BaseShape::BaseShape(const Model& model, const Interface& interface, const Inter
     const Point out{(to[1] - from[1]) / length, (from[0] - to[0]) / length};
     edges_.push_back({out, out[0] * from[0] + out[1] * from[1]});
   }
-  first_ = side_of_rectangle(hull);
+  const std::optional<Point> side = side_of_rectangle(hull);
+  const std::optional<double> diameter = diameter_of(hull);
+  outline = side ? Outline::rectangle : diameter ? Outline::round : Outline::other;
+  if (side) first_ = *side;
   for (std::size_t k = 0; k < 2; ++k) {
     const auto [least, most] = std::ranges::minmax(points | std::views::transform([&](const Point& point) { return along(point, k); }));
-    width[k] = most - least;
+    width[k] = diameter.value_or(most - least);
   }
 }
 
@@ -97,6 +116,11 @@ double BaseShape::along(const std::array<double, 2>& vector, std::size_t axis) c
 
 double BaseShape::eccentricity(const Thrust& thrust, std::size_t axis) const {
   return along(thrust.first, axis) / (thrust.force * width[axis]);
+}
+
+double BaseShape::eccentricity(const Thrust& thrust) const {
+  const double first = std::abs(eccentricity(thrust, 0)), second = width[1] > 0 ? std::abs(eccentricity(thrust, 1)) : 0;
+  return outline == Outline::round ? std::hypot(first, second) : std::max(first, second);
 }
 
 double BaseShape::overturning_safety(const Thrust& rest, const Thrust& now) const {

@@ -21,6 +21,9 @@ class BaseShape {
   /// Extent along t1 and t2 [m]; the second is 0 in the plane. Of a rectangle that is turned in space along its sides, the first the one
   /// within 45 degrees of t1.
   std::array<double, 2> width{};
+  enum class Outline { other, rectangle, round } outline = Outline::other;  // round: at least 12 corners on a circle
+  /// Place of the thrust over the width: of a round base |e|/D in all directions, of others the larger magnitude of e/B along both axes.
+  double eccentricity(const Thrust& thrust) const;
   /// Place of the thrust over the width, e/B, along the directions of `width`.
   double eccentricity(const Thrust& thrust, std::size_t axis) const;
   /// Stabilising over driving moment about the toe, the least of all edges (docs/theory, eq 29); infinite when nothing drives.

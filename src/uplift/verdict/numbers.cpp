@@ -1,5 +1,7 @@
 #include "uplift/verdict/numbers.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -67,15 +69,14 @@ void add_pressure(const BaseOverTime& base, InterfaceVerdict& said) {
   const bool known = !base.interface.footprint;  // a whole foundation has forces, no pressures
   if (known) add(said.numbers, "max_toe_pressure", pressure);
   if (known && base.pressed()) add(said.numbers, "toe_pressure_ratio", {pressure.value * base.facts.area / base.rest.force, pressure.time});
-  const auto along = [&](std::size_t axis) { return [&base, axis](std::size_t i) { return base.eccentricity(i, axis); }; };
-  if (base.interface.space.dimension == 2) {
-    add(said.numbers, extreme(base, "max_eccentricity", along(0)));
-  } else {
-    add(said.numbers, extreme(base, "max_eccentricity", [&](std::size_t i) {
-          return std::max(std::abs(base.eccentricity(i, 0)), std::abs(base.eccentricity(i, 1)));
-        }));
+  add(said.numbers, extreme(base, "max_eccentricity", [&](std::size_t i) { return base.eccentricity(i); }));
+  if (base.interface.space.dimension == 3) {
+    const auto along = [&](std::size_t axis) { return [&base, axis](std::size_t i) { return base.eccentricity(i, axis); }; };
     add(said.numbers, extreme(base, "max_eccentricity_1", along(0)));
     add(said.numbers, extreme(base, "max_eccentricity_2", along(1)));
+    if (base.shape.outline == BaseShape::Outline::rectangle)
+      add(said.numbers, extreme(base, "max_eccentricity_sum",
+                                [&](std::size_t i) { return std::abs(base.eccentricity(i, 0)) + std::abs(base.eccentricity(i, 1)); }));
   }
   add(said.numbers, extreme(
                         base, "min_overturning_safety", [&](std::size_t i) { return base.overturning(i); }, true));
@@ -263,6 +264,7 @@ InterfaceVerdict base_of(const BuiltCase& built, const RunResult& run, const Run
   InterfaceVerdict said = carried_by(base);
   if (base.pressed()) said.weight = base.rest.force, said.mean_pressure = base.rest.force / base.facts.area;
   said.width = base.shape.width;
+  said.round = base.shape.outline == BaseShape::Outline::round;
   add_uplift(base, built.verdict_request, said);
   add_strength(base, said.numbers);
   add_full_loss(base, said);
@@ -292,6 +294,16 @@ std::string swing_text(const VerdictNumber& number) {
 std::string text_of(const VerdictNumber& number) {
   const bool moves = !swing_text(number).empty() && !is_share(*number.quantity);
   return moves ? format_quantity_within(number.value, *number.swing, number.quantity->unit) : format_value(*number.quantity, number.value);
+}
+
+std::string words_of_eccentricity(const InterfaceVerdict& said) {
+  constexpr double counts = 1.1;  // times the eccentricity along one side
+  const VerdictNumber *one = find_number(said.numbers, "max_eccentricity"), *both = find_number(said.numbers, "max_eccentricity_sum");
+  if (said.round) return "largest of M/N over the diameter";
+  return one && both && both->value > counts * one->value
+             ? fmt::format("e1/B1 + e2/B2 up to {} (full contact: up to 1/6); largest of M/N over the width",
+                           format_value(*both->quantity, both->value))
+             : "largest of M/N over the width";
 }
 
 std::optional<double> uplift_of_tension(double t) {

@@ -30,6 +30,7 @@ struct InterfaceVerdict {
   Role role = Role::base;
   double weight = 0, mean_pressure = 0;  // N, Pa: of the static state; 0 when nothing presses
   std::array<double, 2> width{};         // m, along t1 and t2
+  bool round = false;                    // BaseShape::Outline
   std::vector<VerdictNumber> numbers;    // those that there are, in the order of verdict_quantities
   struct Above {
     double threshold = 0, duration = 0;  // 1, s
@@ -85,6 +86,9 @@ inline constexpr double round_off_share = 1e-9;
 std::optional<double> change_of(double value, double reference, double least);
 /// The same, and nothing either where the reference alone is below `least`: there is nothing that changes.
 std::optional<double> change_from(double reference, double value, double least);
+
+/// What max_eccentricity of a base is made of.
+std::string words_of_eccentricity(const InterfaceVerdict&);
 
 /// A number as it is printed wherever it appears: rounded once, here. A residual has no more decimals than its remaining variation.
 std::string text_of(const VerdictNumber&);

@@ -52,6 +52,7 @@ void say_standing(const InterfaceVerdict& said, const std::string& of, Verdict& 
     if (number->quantity->is("max_toe_pressure") && ratio)
       detail = fmt::format("{:.3g} times the mean {}", ratio->value, format_quantity(said.mean_pressure, "Pa"));
     if (number->quantity->is("residual_settlement")) detail = "mean of the base, from the unloaded structure";
+    if (number->quantity->is("max_eccentricity")) detail = words_of_eccentricity(said);
     if (number->quantity->is("max_uplifted_ratio")) detail = "share with an open gap";
     verdict.facts.push_back({each.label + of, uplift::format_value(*number->quantity, number->value), detail});
   }

@@ -209,6 +209,44 @@ TEST(VerdictNumbersTest, SidesOfTurnedRafts) {
   }
 }
 
+/// On a disc e/D is that of the thrust in every direction, on a rectangle the larger one along its sides.
+TEST(VerdictNumbersTest, EccentricityOfADiscAndOfARectangle) {
+  const auto thrust_at = [](double x, double y) {
+    return run_of({view_of({.axial = -1, .moment = std::hypot(x, y), .moment_1 = -y, .moment_2 = x})}, 0.1);
+  };
+  const BuiltCase disc = built_of(R"(title = "disc"
+[nodes]
+base = [0, 0, 0]
+[[rigid]]
+node = "base"
+mass = 1
+inertia = 1
+[[foundation]]
+name = "ground"
+body = "base"
+shape = "disc"
+width = 6
+model = { type = "elastic", K_v = 1e9, K_h = 1e9, K_r = 1e10, K_t = 1e10 }
+[gravity]
+[[stage]]
+type = "static"
+)");
+  for (const double angle : {0.0, 0.4, M_PI / 4, 2.0}) {
+    const VerdictNumbers numbers = numbers_of(disc, thrust_at(1.8 * std::cos(angle), 1.8 * std::sin(angle)), nullptr);
+    EXPECT_NEAR(number(numbers, "max_eccentricity"), 0.3, 1e-12) << angle;
+    EXPECT_EQ(find_number(numbers.interfaces[0].numbers, "max_eccentricity_sum"), nullptr);
+    EXPECT_EQ(words_of_eccentricity(numbers.interfaces[0]), "largest of M/N over the diameter");
+  }
+  const BuiltCase rectangle = raft(0);  // 6 m by 4 m
+  const VerdictNumbers both = numbers_of(rectangle, thrust_at(2.25, 0.8), nullptr),
+                       one = numbers_of(rectangle, thrust_at(2.25, 0.01), nullptr);
+  EXPECT_NEAR(number(both, "max_eccentricity"), 0.375, 1e-12);
+  EXPECT_NEAR(number(both, "max_eccentricity_sum"), 0.575, 1e-12);
+  EXPECT_EQ(words_of_eccentricity(both.interfaces[0]),
+            "e1/B1 + e2/B2 up to 0.575 (full contact: up to 1/6); largest of M/N over the width");
+  EXPECT_EQ(words_of_eccentricity(one.interfaces[0]), "largest of M/N over the width");
+}
+
 /// A base that still goes round on an ellipse: how far it moves does not depend on the axes.
 TEST(VerdictNumbersTest, RemainingVariationOfAVector) {
   const BuiltCase built = raft();
