@@ -215,6 +215,37 @@ type = "static"
   EXPECT_EQ(built_of(body("slaves = [\"high\"]\n")).name_of_top(), "node high");
 }
 
+/// On a rigid base that tilts and twists, a top beside the base moves as theta x r: no deformation.
+TEST(VerdictMotion, TheWholeRotationOfTheBaseIsTakenOff) {
+  const BuiltCase built = built_of(R"(title = "mast beside its base"
+bonded = false
+[nodes]
+base = [0, 0, 0]
+top = [3, -2, 10]
+[[rigid]]
+node = "base"
+slaves = ["top"]
+mass = 1e4
+inertia = 1e4
+[[interface]]
+name = "underside"
+footing = { body = "base", width = 4, length = 4, points = 3, points_across = 3 }
+law = { type = "elastic", K_n = 2e8, K_t = 1e8 }
+[[load]]
+node = "top"
+force = [3e4, 4e4, 0]
+[[stage]]
+type = "static"
+)");
+  const RunResult run = run_of(built);
+  ASSERT_EQ(run.status, RunStatus::completed) << run.reason;
+  // the moment r x F over the stiffness: the areas of 3 x 3 points times x2 are 32 m4 about both axes, twice that about the vertical
+  // that
+  const double x = -4e5 / (2e8 * 32), y = 3e5 / (2e8 * 32), z = 1.8e5 / (1e8 * 64);
+  EXPECT_NEAR(largest_drift(built, run, Drift::with_rotation)->value, std::hypot(y * 10 + z * 2, z * 3 - x * 10), 1e-12);
+  EXPECT_NEAR(largest_drift(built, run, Drift::without_rotation)->value, 0, 1e-12);
+}
+
 TEST(VerdictFullLoss, OfTwoBasesIsWhatTheyLoseTogether) {
   StepRecord record;
   record.extremes.resize(3);

@@ -42,13 +42,24 @@ Sum displacement(const BuiltCase& built, int node, const Vec3& arm, const Vec3& 
   return sum;
 }
 
-/// What moves the top along a horizontal axis like a rigid body on the base, `h` above it. In space: along x about y, along y about x.
-Sum turned(const BuiltCase& built, int axis, double h) {
-  const bool plane = built.model.space.dimension == 2, of_nodes = built.facts.front().upper.size() > 1;
-  const bool second = !plane && axis == 0;
-  const double factor = second ? h : -h;
-  if (Sum tilt = recorded(built.plan, second ? Column::tilt_2 : Column::tilt_1, 0, factor)) return tilt;
-  return of_nodes ? std::nullopt : displacement(built, built.base, plane ? rz : second ? ry : rx, factor);
+/// What moves the top along a horizontal direction like a rigid body on the base: theta x (x_top - x_base). The tilt of a base of several
+/// nodes is about the horizontal axes alone.
+Sum turned(const BuiltCase& built, const Vec3& direction) {
+  const Model& model = built.model;
+  const Space space = model.space;
+  const Vec3 arm = built.top_place() - model.nodes[static_cast<std::size_t>(built.base)].position;
+  const bool of_nodes = built.facts.front().upper.size() > 1;
+  Terms sum;
+  for (int k = 0; k < (of_nodes ? space.dimension - 1 : space.rotations()); ++k) {
+    const Vec3 axis = of_nodes && space.dimension == 3 ? local_axis(space, model.up(), k) : space.axis(space.dimension + k);
+    const double factor = cross(axis, arm).dot(direction);
+    if (std::abs(factor) <= no_component * arm.norm()) continue;
+    const Sum part = of_nodes ? recorded(built.plan, k == 0 ? Column::tilt_1 : Column::tilt_2, 0, factor)
+                              : displacement(built, built.base, space.dof(space.dimension + k), factor);
+    if (!part) return std::nullopt;
+    sum.insert(sum.end(), part->begin(), part->end());
+  }
+  return sum;
 }
 
 void take_off(Terms& from, const Terms& what) {
@@ -61,13 +72,12 @@ void take_off(Terms& from, const Terms& what) {
 /// Motion of the top relative to the base; `rigid`: without what the rotation of the base makes of it.
 std::optional<CombinedRequest> drift(const BuiltCase& built, std::string_view name, bool rigid) {
   const Model& model = built.model;
-  const double height = (built.top_place() - model.nodes[static_cast<std::size_t>(built.base)].position).dot(model.up());
   CombinedRequest made{.name = std::string(name)};
   for (int axis = 0; axis < model.space.dimension - 1; ++axis) {
     const Vec3 along = local_axis(model.space, model.up(), axis);
     Sum sum = displacement(built, built.top, built.top_arm, along);
     const Sum base = displacement(built, built.base, Vec3::Zero(), along);
-    const Sum turns = rigid ? turned(built, axis, height) : Sum(Terms());
+    const Sum turns = rigid ? turned(built, along) : Sum(Terms());
     if (!sum || !base || !turns) return std::nullopt;
     take_off(*sum, *base);
     take_off(*sum, *turns);
