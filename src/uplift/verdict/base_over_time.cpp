@@ -33,6 +33,7 @@ BaseOverTime::BaseOverTime(const BuiltCase& built, const RunResult& result, std:
   } else if (built.bases() == 1) {
     rest.force = built.weight;
   }
+  find_what_stabilises(built);
   const auto square = [](double axial, double shear_1, double shear_2) { return axial * axial + shear_1 * shear_1 + shear_2 * shear_2; };
   double largest = 0, largest_change = 0;  // squares
   for (std::size_t i = 0; i < run.steps.size(); ++i) {
@@ -42,6 +43,22 @@ BaseOverTime::BaseOverTime(const BuiltCase& built, const RunResult& result, std:
   }
   largest_force = std::sqrt(largest);
   least_force = std::max(noise_share * std::sqrt(largest_change), round_off_share * largest_force);
+}
+
+/// The weight, where this base alone bears the constant loads: they then give the thrust at rest.
+void BaseOverTime::find_what_stabilises(const BuiltCase& built) {
+  stabilises = rest;
+  const std::optional<ConstantLoads> loads = constant_loads(built, index);
+  if (!loads || !(rest.force > 0)) return;
+  const double arm = std::max(shape.width[0], shape.width[1]);
+  const bool leans = std::ranges::any_of(built.plan.stages, &Stage::p_delta);  // the moment of the weight that has moved
+  const double tolerance = leans ? 0.02 : 1e-3;
+  bool alone = !run.steps.rest.empty() && built.bases() == 1 && std::abs(loads->all.force - rest.force) <= 1e-3 * rest.force;
+  for (std::size_t k = 0; k < 2; ++k) alone = alone && std::abs(loads->all.first[k] - rest.first[k]) <= tolerance * rest.force * arm;
+  if (alone)
+    stabilises = loads->weight;
+  else if (loads->lateral() > 1e-3 * rest.force * arm)
+    counted_as_weight = loads->lateral();
 }
 
 double BaseOverTime::shear(std::size_t step) const {
@@ -65,7 +82,7 @@ double BaseOverTime::eccentricity(std::size_t step, std::size_t axis) const {
 }
 
 double BaseOverTime::overturning(std::size_t step) const {
-  const double safety = pressed() ? shape.overturning_safety(rest, thrust(step)) : nothing;
+  const double safety = pressed() ? shape.overturning_safety(stabilises, thrust(step)) : nothing;
   return safety < largest_safety ? safety : nothing;
 }
 

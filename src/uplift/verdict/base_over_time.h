@@ -28,10 +28,13 @@ class BaseOverTime {
   const InterfaceFacts& facts;
   BaseShape shape;
   Thrust rest;
-  double least_force = 0;    // N: less is noise
-  double largest_force = 0;  // N
+  Thrust stabilises;             // of the weight, else as at rest
+  double counted_as_weight = 0;  // N m: moment of constant loads other than the weight that is in `stabilises`, because it is the rest
+  double least_force = 0;        // N: less is noise
+  double largest_force = 0;      // N
 
  private:
+  void find_what_stabilises(const BuiltCase& built);
   Thrust thrust(std::size_t step) const { return thrust_of(interface.space, at(step).axial, at(step).moment_1, at(step).moment_2); }
   bool carries(std::size_t step) const;
   double cohesive_share(std::size_t step) const;

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "uplift/case/case.h"
@@ -14,6 +15,16 @@ struct Thrust {
 };
 Thrust thrust_of(Space space, double axial, double moment_1, double moment_2);
 
+/// What the constant loads on all that is connected to the upper side of a base would make of its thrust, if it bore them alone.
+struct ConstantLoads {
+  Thrust all;
+  // The weight: gravity, the vertical parts of loads whose resultant acts downwards, and less the uplift of the water in the base's joint.
+  Thrust weight;
+  double lateral() const;  // N m: of the others, about the reference point
+};
+/// Nothing where gravity is inclined.
+std::optional<ConstantLoads> constant_loads(const BuiltCase& built, std::size_t base);
+
 /// How far a base goes: its convex outline in the plane of its mean normal, about the reference point of its moments.
 class BaseShape {
  public:
@@ -27,7 +38,7 @@ class BaseShape {
   /// Place of the thrust over the width, e/B, along the directions of `width`.
   double eccentricity(const Thrust& thrust, std::size_t axis) const;
   /// Stabilising over driving moment about the toe, the least of all edges (docs/theory, eq 29); infinite when nothing drives.
-  double overturning_safety(const Thrust& rest, const Thrust& now) const;
+  double overturning_safety(const Thrust& stabilises, const Thrust& now) const;
 
  private:
   struct Edge {

@@ -265,6 +265,7 @@ InterfaceVerdict base_of(const BuiltCase& built, const RunResult& run, const Run
   if (base.pressed()) said.weight = base.rest.force, said.mean_pressure = base.rest.force / base.facts.area;
   said.width = base.shape.width;
   said.round = base.shape.outline == BaseShape::Outline::round;
+  said.counted_as_weight = base.counted_as_weight;
   add_uplift(base, built.verdict_request, said);
   add_strength(base, said.numbers);
   add_full_loss(base, said);

@@ -31,6 +31,7 @@ struct InterfaceVerdict {
   double weight = 0, mean_pressure = 0;  // N, Pa: of the static state; 0 when nothing presses
   std::array<double, 2> width{};         // m, along t1 and t2
   bool round = false;                    // BaseShape::Outline
+  double counted_as_weight = 0;          // N m, see BaseOverTime
   std::vector<VerdictNumber> numbers;    // those that there are, in the order of verdict_quantities
   struct Above {
     double threshold = 0, duration = 0;  // 1, s
@@ -45,6 +46,7 @@ struct CriterionResult {
   enum class State { met, not_met, undetermined } state = State::undetermined;
   std::optional<double> value = {};
   std::optional<double> time = {};
+  bool within_step_change = false;  // twice the step changes the value by as much as it is away from the limit
 };
 std::string_view to_string(CriterionResult::State);
 

@@ -11,6 +11,7 @@
 #include "text_support.h"
 #include "uplift/case/case.h"
 #include "uplift/io/text/toml.h"
+#include "uplift/verdict/edge_warnings.h"
 #include "uplift/verdict/motion.h"
 #include "uplift/verdict/numbers.h"
 #include "uplift/verdict/verdict.h"
@@ -102,6 +103,20 @@ TEST(FoundationStrength, UtilisationsOfGivenLoads) {
   EXPECT_NEAR(ran.verdict("max_sliding_utilisation"), sliding, 1e-9);
   EXPECT_NEAR(ran.verdict("min_sliding_safety"), 1 / sliding, 1e-7);
   EXPECT_EQ(find_column(ran.result, Column::bearing_capacity, 0), nullptr);  // it does not grow
+}
+
+/// e/D = M/(N D).
+TEST(FoundationStrength, BeyondADiscOnSpringsIsWarnedOf) {
+  const auto warned = [](const std::string& moment, const std::string& shape) {
+    const Ran ran = run_text(replaced(replaced(plane, "moment = -1.2e6", "moment = -" + moment), "V_s = 4e6, friction_angle = \"30 deg\"",
+                                      "shape_number = " + shape));
+    const std::vector<std::string> said = edge_warnings(ran.built, numbers_of(ran.built, ran.result, nullptr));
+    return std::ranges::any_of(said,
+                               [](const std::string& each) { return each.find("beyond what shape_number = 8 is meant for") != each.npos; });
+  };
+  EXPECT_TRUE(warned("2.1e6", "8"));   // 0.35
+  EXPECT_FALSE(warned("1.5e6", "8"));  // 0.25
+  EXPECT_FALSE(warned("2.1e6", "6"));
 }
 
 TEST(FoundationStrength, CohesionActsOnTheEffectiveArea) {

@@ -5,8 +5,10 @@
 
 #include <cmath>
 
+#include "tower_case.h"
 #include "unit/verdict/strip_support.h"
 #include "uplift/verdict/base_over_time.h"
+#include "uplift/verdict/edge_warnings.h"
 
 namespace uplift::numbers_test {
 namespace {
@@ -367,6 +369,52 @@ step = 0.01
   const BasePose pose = InterfaceViewer(built.model, 1e-9, built.plan.bases).pose(state, 0, {});
   EXPECT_NEAR(pose.settlement, 0.02, 1e-15);
   EXPECT_NEAR(pose.tilt_1, -0.02 / 4, 1e-15);  // clockwise: the right side goes down
+}
+
+/// Codes: the moment of the weight about the toe over that of all that turns about it, constant loads included. W = 34 t x g = 333.54 kN
+/// on 3 m; at 5 m 40 kN push all the time and up to 10 kN more: 500.31/(200 + 50) = 2.001. The same with a mast that a spring holds as
+/// well: the base does not bear the loads alone, and the push counts as at rest, with a warning.
+TEST(VerdictNumbers, ConstantPushOverturns) {
+  const auto text = [](const std::string& more) {
+    return "title = \"tower\"\n" + Tower().text() + weight +
+           "[[interface]]\nname = \"soil\"\nfooting = { body = \"base\", width = 3, points = 41 }\n"
+           "law = { type = \"springs\", K_n = 1e9, K_t = 1e8 }\n[[function]]\nname = \"slow\"\nshape = { type = \"ramp\", duration = 9 }\n"
+           "[[load]]\nnode = \"top\"\nforce = [4e4, 0]\n[[load]]\nnode = \"top\"\nforce = [1e4, 0]\nfunction = \"slow\"\n"
+           "[damping]\nalpha = 2\n[[stage]]\ntype = \"static\"\n[[stage]]\ntype = \"dynamic\"\nduration = 10\nstep = 0.01\n" +
+           more;
+  };
+  const BuiltCase built = built_of(text(""));
+  const RunResult run = run_of(built);
+  ASSERT_EQ(to_string(run.status), "completed") << run.reason;
+  const VerdictNumbers numbers = numbers_of(built, run, nullptr);
+  EXPECT_NEAR(number(numbers, "min_overturning_safety"), 34e3 * 9.81 * 1.5 / 250e3, 0.02);
+  EXPECT_EQ(numbers.interfaces.front().counted_as_weight, 0);
+  const BuiltCase held = built_of(text("[[spring]]\nname = \"stay\"\nnodes = [\"top\"]\ndirection = [1, 0]\nstiffness = 1e7\n"));
+  const VerdictNumbers shared = numbers_of(held, run_of(held), nullptr);
+  EXPECT_NEAR(shared.interfaces.front().counted_as_weight, 200e3, 1);
+  const std::vector<std::string> said = edge_warnings(held, shared);
+  EXPECT_TRUE(std::ranges::any_of(said, [](const std::string& each) {
+    return each.find("counts the moment of constant loads other than the weight, 200 kN m") != each.npos;
+  }));
+}
+
+/// Loads that act downwards stabilise with their arm, 1000 kN in the middle and 200 kN at 0.5 m, less the water's 3 x 100 kN in the joint;
+/// their horizontal part at 1 m, 50 kN m, and moments do not.
+TEST(VerdictNumbers, WhatStabilises) {
+  const BuiltCase built = built_of(
+      "title = \"wet\"\n[nodes]\nbase = [0, 0]\nside = [0.5, 1]\n[[rigid]]\nname = \"footing\"\nnode = \"base\"\nslaves = [\"side\"]\nmass "
+      "= 1e4\n"
+      "inertia = 7500\n[[interface]]\nname = \"soil\"\nfooting = { body = \"base\", width = 3, points = 41 }\nwater = { head = 10, "
+      "unit_weight = 1e4 }\n"
+      "law = { type = \"springs\", K_n = 2e8, K_t = 1e8 }\n[[load]]\nnode = \"base\"\nforce = [2e5, -1e6]\nmoment = -3e5\n"
+      "[[load]]\nnode = \"side\"\nforce = [5e4, -2e5]\n"
+      "[[stage]]\ntype = \"static\"\n");
+  const std::optional<ConstantLoads> loads = constant_loads(built, 0);
+  ASSERT_TRUE(loads);
+  EXPECT_NEAR(loads->weight.force, 1.2e6 - 3e5, 1e-6);
+  EXPECT_NEAR(loads->weight.first[0], 2e5 * 0.5, 1e-6);
+  EXPECT_NEAR(loads->all.first[0], 2e5 * 0.5 + 5e4 * 1 + 3e5, 1e-6);
+  EXPECT_NEAR(loads->lateral(), 3.5e5, 1e-6);
 }
 
 }  // namespace
