@@ -168,10 +168,11 @@ function criteria_of(catalog: Catalog, summary: Summary): Criterion[] {
       label: quantity.meaning,
       interface: each.interface ?? each.beam ?? "",
       state: each.result,
-      valueText: each.value === null ? "not computed" : signed(quantity, each.value, format_within(quantity, each.value, swing)),
+      valueText: each.value === null ? (each.result === "met" ? "none" : "not computed") : signed(quantity, each.value, format_within(quantity, each.value, swing)),
       limitText: signed(quantity, each.limit, format_value(quantity, each.limit)),
       atLeast: each.kind === "at_least",
       source: each.source,
+      uncertain: each.within_step_change ?? false,
     };
   });
 }

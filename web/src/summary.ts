@@ -99,6 +99,7 @@ export interface CriterionSummary {
   limit: number;
   kind: "at_least" | "at_most";
   source: string;
+  within_step_change?: boolean;
 }
 
 export interface VerdictSummary {

@@ -81,6 +81,8 @@ export interface Criterion {
   limitText: string;
   atLeast: boolean;
   source: string;
+  /** Twice the step changes the value by as much as it is away from the limit. */
+  uncertain: boolean;
 }
 
 /** What becomes of a floor spectrum against the bonded run, band by band. */

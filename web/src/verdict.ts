@@ -69,11 +69,11 @@ function tension_bars(base: BaseVerdict): HTMLElement | null {
 const STATE_SIGN: Record<CriterionState, string> = { met: "✓", "not met": "✕", undetermined: "?" };
 
 function criterion_row(criterion: Criterion): HTMLElement {
-  const { state, label, atLeast, source, valueText, limitText } = criterion;
+  const { state, label, atLeast, source, valueText, limitText, uncertain } = criterion;
   return h("li", { class: `criterion is-${state.replace(" ", "-")}` },
     h("span", { class: "state" }, h("i", { "aria-hidden": "true" }, STATE_SIGN[state]), ` ${state}`),
     h("span", { class: "what" }, label + (criterion.interface ? ` (${criterion.interface})` : "")),
-    h("span", { class: "value" }, tied(valueText), `, limit ${atLeast ? "≥" : "≤"} ${tied(limitText)}`),
+    h("span", { class: "value" }, tied(valueText), `, limit ${atLeast ? "≥" : "≤"} ${tied(limitText)}`, uncertain ? "; not certain: twice the step changes the value by as much as it is away from the limit" : ""),
     h("span", { class: "by" }, source));
 }
 

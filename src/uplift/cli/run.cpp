@@ -23,7 +23,7 @@ void say_facts(const std::vector<Verdict::Fact>& facts) {
 
 /// The value of a criterion, rounded as in the facts above it: a residual has no more decimals than its remaining variation.
 std::string value_text(const VerdictNumbers& numbers, const CriterionResult& result) {
-  if (!result.value) return "not computed";
+  if (!result.value) return result.state == CriterionResult::State::met ? "none" : "not computed";
   const VerdictQuantity& quantity = *result.criterion.quantity;
   for (const InterfaceVerdict& each : numbers.interfaces)
     if (each.name == result.interface)
@@ -37,8 +37,10 @@ void say_criteria(const VerdictNumbers& numbers) {
   for (const CriterionResult& result : numbers.criteria) {
     const VerdictQuantity& quantity = *result.criterion.quantity;
     const std::string of = result.interface.empty() ? "" : " of " + result.interface;
-    say(fmt::format("criterion {}: {}{} {}, at {} {} ({})", to_string(result.state), quantity.brief, of, value_text(numbers, result),
-                    quantity.at_least ? "least" : "most", format_value(quantity, result.criterion.limit), result.criterion.source));
+    say(fmt::format(
+        "criterion {}: {}{} {}, at {} {} ({}){}", to_string(result.state), quantity.brief, of, value_text(numbers, result),
+        quantity.at_least ? "least" : "most", format_value(quantity, result.criterion.limit), result.criterion.source,
+        result.within_step_change ? "; not certain: twice the step changes the value by as much as it is away from the limit" : ""));
   }
 }
 

@@ -197,6 +197,25 @@ std::string_view to_string(StepCheck::State state) {
   return "";
 }
 
+void mark_criteria(VerdictNumbers& numbers) {
+  for (CriterionResult& result : numbers.criteria) {
+    const VerdictNumber* number = nullptr;
+    const auto look = [&](const std::vector<VerdictNumber>& list) {
+      if (const VerdictNumber* found = find_number(list, *result.criterion.quantity)) number = found;
+    };
+    if (result.interface.empty()) look(numbers.whole);
+    for (const InterfaceVerdict& said : numbers.interfaces)
+      if (said.name == result.interface) look(said.numbers);
+    for (const BeamVerdict& beam : numbers.beams)
+      if (beam.name == result.interface) look(beam.numbers);
+    if (!number || !number->coarse || !result.value) continue;
+    const bool sign_counts = result.criterion.quantity->at_least || number->quantity->name.starts_with("change_of");
+    const double size = sign_counts ? number->value : std::abs(number->value);
+    const double change = std::abs(*number->coarse - number->value);
+    result.within_step_change = change > 0 && change >= std::abs(result.criterion.limit - size);
+  }
+}
+
 void compare_steps(VerdictNumbers& numbers, const VerdictNumbers& coarse, StepCheck& check) {
   const Scale scale = scale_of(numbers);
   compare_numbers(numbers.whole, coarse.whole, "", scale, check);
@@ -210,6 +229,7 @@ void compare_steps(VerdictNumbers& numbers, const VerdictNumbers& coarse, StepCh
   for (BeamVerdict& beam : numbers.beams) compare_numbers(beam.numbers, numbers_named(coarse.beams, beam.name), beam.name, scale, check);
   for (StoreyVerdict& storey : numbers.storeys)
     compare_numbers(storey.numbers, numbers_named(coarse.storeys, storey.name), storey.name, scale, check);
+  mark_criteria(numbers);
   judge(check);
 }
 

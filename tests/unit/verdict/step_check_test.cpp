@@ -62,6 +62,25 @@ TEST(StepCheck, DurationsAreStatedAndDecideNothing) {
   EXPECT_EQ(format_step_change(numbers.interfaces.front().numbers[1]), "\u00b10.10 s");
 }
 
+/// 89.3 % beside a limit of 90 %: a change by one point is more than the 0.7 points that are left, one by half a point is not.
+TEST(StepCheck, CriteriaNearTheirLimitAreMarked) {
+  const auto marked = [](double coarse) {
+    VerdictNumbers numbers = numbers_with({number("max_uplifted_ratio", 0.893)});
+    CriterionResult& result = numbers.criteria.emplace_back();
+    result.criterion.quantity = find_verdict_quantity("max_uplifted_ratio");
+    result.criterion.limit = 0.9;
+    result.interface = "soil";
+    result.value = 0.893;
+    result.state = CriterionResult::State::met;
+    compared(numbers, numbers_with({number("max_uplifted_ratio", coarse)}));
+    return numbers.criteria.front().within_step_change;
+  };
+  EXPECT_TRUE(marked(0.903));
+  EXPECT_TRUE(marked(0.883));
+  EXPECT_FALSE(marked(0.898));
+  EXPECT_FALSE(marked(0.893));
+}
+
 TEST(StepCheck, SafetiesByTheirInverse) {
   EXPECT_NEAR(change_of_one("min_overturning_safety", 1.25, 1.0), 0.2, 1e-15);
   EXPECT_NEAR(change_of_one("min_sliding_safety", 40, 20), 0.025 / 0.1, 1e-15) << "both are far from sliding";
