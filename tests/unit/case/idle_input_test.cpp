@@ -60,6 +60,76 @@ TEST(IdleInput, SecondOrderWhereNothingMakesIt) {
   EXPECT_FALSE(warns(footing + weight + statics + dynamics + second_order, "p_delta has no effect"));
 }
 
+const std::string shaking =
+    "[[function]]\nname = \"r\"\nshape = { type = \"ricker\", frequency = 20 }\n[[ground_acceleration]]\nfunction = \"r\"\n";
+
+TEST(IdleInput, NothingDrivesADynamicStage) {
+  const std::string word = "nothing drives the dynamic stage";
+  EXPECT_TRUE(warns(footing + weight + statics + dynamics, word));
+  EXPECT_FALSE(warns(footing + weight + shaking + statics + dynamics, word));
+  EXPECT_FALSE(warns(footing + weight + dynamics, word)) << "the weight acts suddenly";
+  EXPECT_FALSE(warns(footing + weight + "[[initial]]\nnode = \"base\"\nvelocity = [0, 0.1]\n" + statics + dynamics, word));
+}
+
+TEST(IdleInput, ABodyThatASupportHolds) {
+  const auto held = [](const std::string& fixed) {
+    return footing + weight + shaking + "[[support]]\nnode = \"base\"\nfixed = [" + fixed + "]\n" + statics + dynamics;
+  };
+  EXPECT_TRUE(warns(held("\"ux\", \"uy\", \"rz\""), "the body base of the base \"soil\" is held (uy, rz)"));
+  EXPECT_TRUE(warns(held("\"rz\""), "is held (rz)"));
+  EXPECT_FALSE(warns(held("\"ux\""), "is held"));
+  EXPECT_FALSE(warns(footing + weight + shaking + statics + dynamics, "is held"));
+}
+
+TEST(IdleInput, TheSameTwice) {
+  const std::string second =
+      "[[interface]]\nname = \"again\"\nfooting = { body = \"base\", width = 3, points = 21 }\nlaw = { type = \"springs\", K_n = 1e8 }\n";
+  const std::string place = "stand at the same place under the body base", load = "[[load]]\nnode = \"base\"\nforce = [1e3, 0]\n",
+                    mass = "[[mass]]\nnode = \"base\"\nmass = 1e3\n", rest = footing + weight + shaking + statics + dynamics;
+  EXPECT_TRUE(warns(rest + second, place));
+  EXPECT_FALSE(warns(rest + support::replaced(second, "points = 21", "points = 21, offset = [5, 0]"), place));
+  EXPECT_FALSE(warns(rest + load + mass, "both act"));
+  EXPECT_TRUE(warns(rest + load + load, "this [[load]] is the same as that of line"));
+  EXPECT_FALSE(warns(rest + load + support::replaced(load, "1e3", "2e3"), "both act"));
+  EXPECT_TRUE(warns(rest + mass + mass, "this [[mass]] is the same as that of line"));
+  EXPECT_TRUE(warns(rest + "[[ground_acceleration]]\nfunction = \"r\"\n", "this [[ground_acceleration]] is the same as"));
+}
+
+TEST(IdleInput, ANegativeGap) {
+  EXPECT_TRUE(warns(support::replaced(footing, "law = ", "gap = -2e-3\nlaw = ") + weight + statics, "its sides overlap by up to 2.00 mm"));
+  EXPECT_FALSE(warns(support::replaced(footing, "law = ", "gap = 2e-3\nlaw = ") + weight + statics, "overlap"));
+}
+
+/// W = 1: under n points at the ends and evenly between them, of B/(n - 1) and half of it, the second moment of area is B^2/12 (1 + 2/(n -
+/// 1)^2) and the farthest point stands at B/2; a base opens at W I/x, a strip on springs at W B/6. Midpoints: 1 - 1/n^2 at (n - 1) B/(2 n).
+TEST(IdleInput, TwoOrThreePoints) {
+  const auto with = [](const std::string& points, const std::string& law = "type = \"springs\", K_n = 2e8, K_t = 1e8") {
+    return support::replaced(support::replaced(footing, "points = 21", "points = " + points),
+                             "type = \"springs\", K_n = 2e8, K_t = 1e8, tangential = \"bonded\"", law) +
+           weight + statics;
+  };
+  const std::string opens = "on springs the moment at which a rectangle opens comes out ";
+  EXPECT_TRUE(warns(with("2"), opens + "200 % too large, its rocking stiffness 200 % too large"));
+  EXPECT_TRUE(warns(with("3"), opens + "50 % too large, its rocking stiffness 50 % too large"));
+  EXPECT_TRUE(warns(with("3, rule = \"midpoint\""), opens + "33 % too large, its rocking stiffness 11 % too small"));
+  EXPECT_TRUE(warns(with("2, rule = \"gauss\""), opens + "73 % too large, and"));  // sqrt 3 - 1
+  EXPECT_FALSE(warns(with("4"), opens));
+  EXPECT_FALSE(warns(with("2", "type = \"coulomb\", friction = 0.6"), "2 points")) << "a rigid block on its two corners";
+  EXPECT_TRUE(warns(with("2, rule = \"gauss\"", "type = \"coulomb\", friction = 0.6"), "the moment that overturns it is 42 % too small"));
+}
+
+TEST(IdleInput, AMotionOfNoSize) {
+  const std::string still = "[[motion]]\nnode = \"base\"\ndirection = \"uy\"\namplitude = 0\n";
+  EXPECT_TRUE(warns(footing + still + statics, "has no effect: its amplitude is 0"));
+  EXPECT_FALSE(warns(footing + still + statics, "its function"));
+}
+
+TEST(IdleInput, ABaseThatAMotionPresses) {
+  const std::string pressed = "[[motion]]\nnode = \"base\"\ndirection = \"uy\"\namplitude = -1e-3\n";
+  EXPECT_FALSE(warns(footing + pressed + statics, "[gravity] is missing"));
+  EXPECT_TRUE(warns(footing + shaking + statics + dynamics, "[gravity] is missing"));
+}
+
 TEST(IdleInput, AMotionThatIsZeroInStaticStages) {
   const auto moved = [](const std::string& shape) {
     return "[[function]]\nname = \"f\"\nshape = { type = \"harmonic\", frequency = 2" + shape +

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "uplift/base/format.h"
+#include "uplift/case/build/output.h"
 #include "uplift/case/ground/ground.h"
 #include "uplift/case/mesh/mesh.h"
 #include "uplift/case/schema/case_input.h"
@@ -31,12 +32,18 @@ void warn_gaps(const BuiltCase& built, std::vector<std::string>& said) {
   constexpr double most = 0.1;
   if (built.model.nodes.empty()) return;
   const double size = extent(built.model);
-  for (const Interface& interface : built.model.interfaces)
+  for (const Interface& interface : built.model.interfaces) {
+    if (const double overlap = -interface.gap.minCoeff(); overlap > 0)
+      said.push_back(
+          fmt::format("interface \"{}\": a negative gap: its sides overlap by up to {} before any load and press each other apart; a gap "
+                      "between them is positive",
+                      interface.name, format_quantity(overlap, "m")));
     if (const double gap = interface.gap.maxCoeff(); size > 0 && gap > most * size)
       said.push_back(
           fmt::format("interface \"{}\": an initial gap of {} in a model of {} will hardly close (joints have gaps of "
                       "millimetres to centimetres); is the unit right?",
                       interface.name, format_quantity(gap, "m"), format_quantity(size, "m")));
+  }
 }
 
 void warn_sides_exchanged(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
@@ -103,12 +110,116 @@ void warn_settlement(const BuiltCase& built, std::vector<std::string>& said) {
 void warn_unloaded(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
   const bool shaken = !read.input->grounds.empty() || !read.input->motions.empty();
   if (!shaken || built.weight != 0 || built.bases() == 0 || !read.input->loads.empty()) return;
+  const auto presses = [](const PrescribedMotion& motion) { return !motion.opening.isZero(0); };  // or lifts it, as is asked for
+  if (std::ranges::any_of(built.model.motions, presses)) return;
   const auto opens = [](const Interface& each) {  // see warn_closure for laws with a closure stress
     const LawScales scales = each.law != nullptr ? each.law->scales() : LawScales();
     return scales.opens && scales.strength <= 0 && scales.closure <= 0;
   };
   if (std::ranges::any_of(built.model.interfaces, opens))
     said.push_back("nothing presses the base down, and it opens under any motion: [gravity] is missing");
+}
+
+/// A body on an interface that a support holds can neither turn nor lift off.
+void warn_held_bodies(const BuiltCase& built, std::vector<std::string>& said) {
+  const Space space = built.model.space;
+  for (std::size_t k = 0; k < built.bases(); ++k) {
+    const InterfaceFacts& facts = built.facts[k];
+    const int node = facts.body.empty() ? -1 : built.model.find_node(facts.body);
+    if (node < 0) continue;
+    std::string held;
+    for (int i = 0; i < space.unknowns(); ++i) {
+      const bool rocks = space.is_rotation(i) && (space.dimension == 2 || space.dof(i) != rz);
+      if ((rocks || i == space.up()) && !moves(built.model, built.model.at(node, space.dof(i))))
+        held += (held.empty() ? "" : ", ") + std::string(to_string(space.dof(i)));
+    }
+    if (!held.empty())
+      said.push_back(
+          fmt::format("the body {} of the base \"{}\" is held ({}) by a support, and the base cannot open as it would without: "
+                      "a body that stands on an interface needs no [[support]]",
+                      facts.body, facts.name, held));
+  }
+}
+
+/// Two bases under one body at one place: their stiffnesses and capacities add up.
+void warn_repeated_bases(const BuiltCase& built, std::vector<std::string>& said) {
+  for (std::size_t k = 0; k < built.bases(); ++k)
+    for (std::size_t j = 0; j < k; ++j) {
+      const Interface &one = built.model.interfaces[j], &other = built.model.interfaces[k];
+      if (built.facts[k].body.empty() || built.facts[k].body != built.facts[j].body) continue;
+      if ((one.reference - other.reference).norm() > 1e-6 * std::sqrt(built.facts[j].area)) continue;
+      said.push_back(fmt::format("\"{}\" and \"{}\" stand at the same place under the body {}: the ground is there twice", one.name,
+                                 other.name, built.facts[k].body));
+    }
+}
+
+/// How few points stand for the pressure of a base along one axis.
+struct Division {
+  int points = 0;
+  double width = 0, farthest = 0, inertia = 0;  // m, m, m2: of the area over the area, about its middle
+};
+Division division_along(const Model& model, const Interface& interface, const InterfaceFacts& facts, int axis) {
+  const Vec3 along = local_axis(interface.space, mean_normal(interface), axis);
+  std::vector<double> at, ends;
+  double area = 0, middle = 0;
+  for (std::size_t i = 0; i < interface.position.size(); ++i) {
+    at.push_back(along.dot(interface.position[i] - interface.reference));
+    area += interface.area[static_cast<Index>(i)], middle += interface.area[static_cast<Index>(i)] * at.back();
+  }
+  middle /= area;
+  for (const Place& corner : facts.corners) ends.push_back(along.dot(corner - interface.reference));
+  if (ends.empty())
+    for (const int node : facts.upper)
+      ends.push_back(along.dot(model.nodes[static_cast<std::size_t>(node)].position - interface.reference));
+  const auto [least, most] = std::ranges::minmax(ends);
+  Division made{0, most - least, 0, 0};
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    made.inertia += interface.area[static_cast<Index>(i)] * (at[i] - middle) * (at[i] - middle) / area;
+    made.farthest = std::max(made.farthest, std::abs(at[i] - middle));
+  }
+  std::ranges::sort(at);
+  for (std::size_t i = 0; i < at.size(); ++i)
+    if (i == 0 || at[i] - at[i - 1] > 1e-6 * made.width) ++made.points;
+  return made;
+}
+
+bool is_one_body(const Model& model, const std::vector<int>& nodes) {
+  const auto tied = [&](int node) {
+    return std::ranges::find(model.assembly.ties, node, &Assembly::Tie::slave) != model.assembly.ties.end();
+  };
+  return nodes.size() == 1 || std::ranges::all_of(nodes, tied);
+}
+
+/// Two or three points hardly open: on springs a base opens under the moment W I/(A x) with the farthest point at x, a rectangle under W
+/// B/6.
+void warn_few_points(const BuiltCase& built, std::vector<std::string>& said) {
+  constexpr int enough = 4;
+  for (std::size_t k = 0; k < built.bases(); ++k) {
+    const Interface& interface = built.model.interfaces[k];
+    const InterfaceFacts& facts = built.facts[k];
+    if (interface.footprint || (facts.corners.empty() && !facts.facets) || facts.upper.empty()) continue;  // whole, or pairs on their own
+    if (!interface.cone && !interface.law->scales().opens) continue;
+    for (int axis = 0; axis + 1 < interface.space.dimension; ++axis) {
+      const Division found = division_along(built.model, interface, facts, axis);
+      if (found.points >= enough || !(found.width > 0) || !(found.farthest > 0)) continue;
+      const bool rigid = interface.cone && is_one_body(built.model, facts.upper);
+      const double overturns = 2 * found.farthest / found.width;
+      if (rigid && overturns > 1 - 1e-6) continue;  // a block on its corners
+      const double first = 6 * found.inertia / (found.farthest * found.width) - 1,
+                   turns = 12 * found.inertia / (found.width * found.width) - 1;
+      const auto off = [](double share) { return fmt::format("{} too {}", percent(std::abs(share)), share < 0 ? "small" : "large"); };
+      const std::string turns_off = std::abs(turns) > 1e-3 ? ", its rocking stiffness " + off(turns) : "";
+      const std::string error = rigid ? "the moment that overturns it is " + off(overturns - 1)
+                                      : "on springs the moment at which a rectangle opens comes out " + off(first) + turns_off +
+                                            ", and pressures and uplifted shares accordingly";
+      said.push_back(fmt::format("\"{}\" has {} along {}: {}; take ten or more", interface.name,
+                                 found.points == 1 ? "one point" : fmt::format("{} points", found.points),
+                                 interface.space.dimension == 2 ? "its width"
+                                 : axis == 0                    ? "t1"
+                                                                : "t2",
+                                 error));
+    }
+  }
 }
 
 double size_of(const Mesh& mesh, CellId cell) {
@@ -242,6 +353,9 @@ void warn_interfaces(const Case& read, const BuiltCase& built, std::vector<std::
   warn_floating(read, built, said);
   warn_settlement(built, said);
   warn_unloaded(read, built, said);
+  warn_held_bodies(built, said);
+  warn_repeated_bases(built, said);
+  warn_few_points(built, said);
 }
 
 }  // namespace uplift

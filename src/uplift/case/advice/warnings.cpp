@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "uplift/base/format.h"
+#include "uplift/base/units.h"
 #include "uplift/case/advice/content.h"
 #include "uplift/case/advice/input_warnings.h"
 #include "uplift/case/advice/interface_warnings.h"
@@ -80,8 +81,12 @@ void warn_idle_functions(const Case& read, const BuiltCase& built, std::vector<s
   for (const CaseLoad& load : read.input->loads)
     if (load.function) say(load, "load");
   for (const CaseGround& ground : read.input->grounds) say(ground, "ground_acceleration");
+  for (const CaseMotion& motion : read.input->motions)
+    if (!motion.function && parse_quantity(motion.amplitude, motion.turns ? "rad" : "m").value == 0)
+      said.push_back(fmt::format("the prescribed motion \"{}\" has no effect: its amplitude is 0", motion.name));
   for (const PrescribedMotion& motion : built.model.motions)
-    if (motion.function->value(0) == 0)
+    if (const auto table = std::ranges::find(read.input->motions, motion.name, &CaseMotion::name);
+        motion.function->value(0) == 0 && (table == read.input->motions.end() || table->function))
       said.push_back(
           fmt::format("the prescribed motion \"{}\" has no effect: static stages apply the value that its function has at t = 0, "
                       "which is 0",
@@ -119,6 +124,66 @@ void warn_sudden_weight(const BuiltCase& built, std::vector<std::string>& said) 
     said.push_back(
         "the weight acts suddenly at t = 0, because no static stage comes before the dynamic one: the structure oscillates about its "
         "equilibrium with twice the settlement; put a [[stage]] with type = \"static\" first");
+}
+
+/// A dynamic stage after a static one in which nothing happens.
+void warn_no_excitation(const BuiltCase& built, std::vector<std::string>& said) {
+  const Model& model = built.model;
+  const RunPlan& plan = built.plan;
+  if (!dynamic_stage(plan) || plan.stages.front().type != Stage::Type::statics) return;
+  if (plan.initial_displacement.size() > 0 || plan.initial_velocity.size() > 0) return;
+  if (!model.grounds.empty() || !model.motions.empty() || !model.time_load_tables.empty() || !varying_loads(model).empty()) return;
+  said.push_back(
+      "nothing drives the dynamic stage: there is no ground acceleration, incident wave, prescribed motion, load with a function or "
+      "initial "
+      "motion, and the structure stays as the static stage leaves it");
+}
+
+/// The same table twice acts twice.
+template <class Table, class Same>
+void warn_repeated(const std::vector<Table>& tables, const char* name, const Same& same, std::vector<std::string>& said) {
+  for (std::size_t k = 0; k < tables.size(); ++k)
+    for (std::size_t j = 0; j < k; ++j)
+      if (same(tables[j], tables[k])) {
+        said.push_back(fmt::format("{}:{}: this [[{}]] is the same as that of line {}: both act, and their sum is twice the one",
+                                   tables[k].where().file, tables[k].where().line, name, tables[j].where().line));
+        break;
+      }
+}
+
+void warn_repetitions(const CaseInput& input, std::vector<std::string>& said) {
+  const auto name = [](const std::optional<NameUsed>& function) { return function ? function->name : std::string(); };
+  warn_repeated(
+      input.loads, "load",
+      [&](const CaseLoad& a, const CaseLoad& b) {
+        return a.of.name() == b.of.name() && a.of.node.has_value() == b.of.node.has_value() && a.force == b.force &&
+               a.traction == b.traction && a.pressure == b.pressure && a.moment == b.moment && !a.profile && !b.profile &&
+               name(a.function) == name(b.function);
+      },
+      said);
+  warn_repeated(
+      input.masses, "mass",
+      [](const CaseMass& a, const CaseMass& b) {
+        return a.node.name == b.node.name && a.mass && a.mass == b.mass && a.inertia == b.inertia;
+      },
+      said);
+  warn_repeated(
+      input.grounds, "ground_acceleration",
+      [](const CaseGround& a, const CaseGround& b) {
+        return a.direction == b.direction && a.amplitude == b.amplitude && a.function.name == b.function.name;
+      },
+      said);
+}
+
+/// The ground acceleration moves the frame of the whole model, the ground below the absorbing faces too, and the wave comes on top.
+void warn_ground_and_wave(const CaseInput& input, std::vector<std::string>& said) {
+  const auto wave = std::ranges::find_if(input.absorbing, [](const CaseAbsorbing& each) { return each.incident.has_value(); });
+  if (wave == input.absorbing.end() || input.grounds.empty()) return;
+  said.push_back(
+      fmt::format("{}:{}: this ground acceleration acts together with the incident wave of line {}: the earthquake is there twice; take "
+                  "the wave, or the "
+                  "ground acceleration and a base that is held",
+                  input.grounds.front().where().file, input.grounds.front().where().line, wave->incident->where().line));
 }
 
 /// Steps are equal, so that a stage has a whole number of them.
@@ -354,6 +419,9 @@ std::vector<std::string> warnings(const Case& read, const RunSpec& spec, const B
   warn_idle_functions(read, built, said);
   warn_p_delta(read, built, said);
   warn_sudden_weight(built, said);
+  warn_no_excitation(built, said);
+  warn_repetitions(*read.input, said);
+  warn_ground_and_wave(*read.input, said);
   warn_duration(built, said);
   warn_sides(read, said);
   warn_held_faces(read, built, said);
