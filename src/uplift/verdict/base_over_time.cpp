@@ -48,17 +48,17 @@ BaseOverTime::BaseOverTime(const BuiltCase& built, const RunResult& result, std:
 /// The weight, where this base alone bears the constant loads: they then give the thrust at rest.
 void BaseOverTime::find_what_stabilises(const BuiltCase& built) {
   stabilises = rest;
-  const std::optional<ConstantLoads> loads = constant_loads(built, index);
-  if (!loads || !(rest.force > 0)) return;
+  if (!(rest.force > 0)) return;
+  const ConstantLoads loads = constant_loads(built, index);
   const double arm = std::max(shape.width[0], shape.width[1]);
   const bool leans = std::ranges::any_of(built.plan.stages, &Stage::p_delta);  // the moment of the weight that has moved
   const double tolerance = leans ? 0.02 : 1e-3;
-  bool alone = !run.steps.rest.empty() && built.bases() == 1 && std::abs(loads->all.force - rest.force) <= 1e-3 * rest.force;
-  for (std::size_t k = 0; k < 2; ++k) alone = alone && std::abs(loads->all.first[k] - rest.first[k]) <= tolerance * rest.force * arm;
+  bool alone = !run.steps.rest.empty() && built.bases() == 1 && std::abs(loads.all.force - rest.force) <= 1e-3 * rest.force;
+  for (std::size_t k = 0; k < 2; ++k) alone = alone && std::abs(loads.all.first[k] - rest.first[k]) <= tolerance * rest.force * arm;
   if (alone)
-    stabilises = loads->weight;
-  else if (loads->lateral() > 1e-3 * rest.force * arm)
-    counted_as_weight = loads->lateral();
+    stabilises = loads.weight;
+  else if (loads.lateral() > 1e-3 * rest.force * arm)
+    counted_as_weight = loads.lateral();
 }
 
 double BaseOverTime::shear(std::size_t step) const {

@@ -78,23 +78,22 @@ double ConstantLoads::lateral() const {
   return std::hypot(all.first[0] - weight.first[0], all.first[1] - weight.first[1]);
 }
 
-std::optional<ConstantLoads> constant_loads(const BuiltCase& built, std::size_t base) {
+ConstantLoads constant_loads(const BuiltCase& built, std::size_t base) {
   const Model& model = built.model;
   const Interface& interface = model.interfaces[base];
   const Space space = model.space;
-  const Vec3 normal = mean_normal(interface), up = space.axis(space.up());
-  const Vec3 gravity = model.assembly.gravity;
-  if ((gravity - gravity.dot(up) * up).norm() > 1e-9 * gravity.norm()) return std::nullopt;
+  const Vec3 normal = mean_normal(interface), up = model.up();
   const std::vector<char> carried = part_of(model, built.facts[base].upper);
   const auto thrust = [&](const SparseVector& load, bool vertical) {
     Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
     for (SparseVector::InnerIterator entry(load); entry; ++entry) {
       const int unknown = static_cast<int>(entry.index()), node = space.node_of(unknown), k = space.index_of(unknown);
-      if (!carried[static_cast<std::size_t>(node)] || (vertical && k != space.up())) continue;
-      const Vec3 part = entry.value() * space.axis(k);
+      if (!carried[static_cast<std::size_t>(node)]) continue;
+      Vec3 part = entry.value() * space.axis(k);
       if (space.is_rotation(k)) {
-        moment += part;
+        if (!vertical) moment += part;
       } else {
+        if (vertical) part = part.dot(up) * up;
         force += part;
         moment += cross(model.nodes[static_cast<std::size_t>(node)].position - interface.reference, part);
       }
@@ -114,14 +113,15 @@ std::optional<ConstantLoads> constant_loads(const BuiltCase& built, std::size_t 
     const SparseVector& pattern = model.assembly.loads[i];
     const Thrust whole = thrust(pattern, false);
     add(made.all, whole);
-    const bool is_gravity = i == 0 && !gravity.isZero();
+    const bool is_gravity = i == 0 && !model.assembly.gravity.isZero();
     if (is_gravity || load.name == "water pressure in " + interface.name) {
       add(made.weight, whole);
       continue;
     }
     double upwards = 0;  // N
     for (SparseVector::InnerIterator entry(pattern); entry; ++entry)
-      if (space.index_of(static_cast<int>(entry.index())) == space.up()) upwards += entry.value();
+      if (const int k = space.index_of(static_cast<int>(entry.index())); !space.is_rotation(k))
+        upwards += entry.value() * up.dot(space.axis(k));
     if (upwards < 0) add(made.weight, thrust(pattern, true));
   }
   return made;

@@ -1,6 +1,5 @@
 #pragma once
 #include <array>
-#include <optional>
 #include <vector>
 
 #include "uplift/case/case.h"
@@ -18,12 +17,12 @@ Thrust thrust_of(Space space, double axial, double moment_1, double moment_2);
 /// What the constant loads on all that is connected to the upper side of a base would make of its thrust, if it bore them alone.
 struct ConstantLoads {
   Thrust all;
-  // The weight: gravity, the vertical parts of loads whose resultant acts downwards, and less the uplift of the water in the base's joint.
+  // The weight: gravity, the parts along it of other loads whose resultant acts downwards, and less the uplift of the water in the base's
+  // joint.
   Thrust weight;
   double lateral() const;  // N m: of the others, about the reference point
 };
-/// Nothing where gravity is inclined.
-std::optional<ConstantLoads> constant_loads(const BuiltCase& built, std::size_t base);
+ConstantLoads constant_loads(const BuiltCase& built, std::size_t base);
 
 /// How far a base goes: its convex outline in the plane of its mean normal, about the reference point of its moments.
 class BaseShape {

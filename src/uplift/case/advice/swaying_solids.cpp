@@ -9,7 +9,7 @@ namespace uplift {
 namespace {
 
 double height_at(const Model& model, int node) {
-  return model.nodes[static_cast<std::size_t>(node)].position[model.space.up()];
+  return model.nodes[static_cast<std::size_t>(node)].position.dot(model.up());
 }
 
 /// Lowest and highest place of the deformable solids among these nodes [m]; low > high: none.
@@ -44,10 +44,11 @@ double second_order_of_solids(const BuiltCase& built) {
     if (!model.time_loads[i].dead) continue;
     for (SparseVector::InnerIterator entry(model.assembly.loads[i]); entry; ++entry) {
       const int unknown = static_cast<int>(entry.index()), node = model.space.node_of(unknown);
-      if (!carried[static_cast<std::size_t>(node)] || model.space.index_of(unknown) != model.space.up()) continue;
-      const double height = height_at(model, node);
-      all -= entry.value() * std::max(0.0, height - foot);
-      of_solids -= entry.value() * (std::clamp(height, low, high) - low);
+      const int k = model.space.index_of(unknown);
+      if (!carried[static_cast<std::size_t>(node)] || model.space.is_rotation(k)) continue;
+      const double height = height_at(model, node), weight = -entry.value() * model.up().dot(model.space.axis(k));
+      all += weight * std::max(0.0, height - foot);
+      of_solids += weight * (std::clamp(height, low, high) - low);
     }
   }
   return all > 0 ? std::max(0.0, of_solids / all) : 0;
