@@ -297,6 +297,9 @@ std::string StepCheck::sentence() const {
   const std::string steps = fmt::format("{} instead of {}", format_quantity(coarse_step, "s"), format_quantity(step, "s"));
   if (state == State::not_converged)
     return "Not converged: " + why_not(steps) + after_loss() + " The changes beside the numbers are no bounds of their errors.";
+  constexpr double shown = 1e-3;
+  if (largest < shown)
+    return fmt::format("Converged: with twice the step ({}) no number of the verdict changes by {} or more.", steps, percent(shown));
   const std::string changes = what_changes(quantity, of);
   return fmt::format("Converged: with twice the step ({}) no number of the verdict changes by more than {}{}.", steps, percent(largest),
                      changes.empty() ? "" : " (" + changes + ")");
