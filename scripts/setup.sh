@@ -6,7 +6,7 @@ run="g++ cmake ninja-build pkg-config libeigen3-dev libsuitesparse-dev libopenbl
   nlohmann-json3-dev libudunits2-dev libhdf5-dev zlib1g-dev libsqlite3-dev libcli11-dev libfmt-dev"
 test="libgtest-dev librapidcheck-dev python3 python3-jsonschema python3-numpy python3-pandas python3-matplotlib python3-yaml mypy patchelf
   parallel slurmctld slurmd slurm-client munge"
-mpi="libpetsc-real-dev libscotch-dev libopenmpi-dev openmpi-bin"
+mpi="libpetsc-real-dev libptscotch-dev libopenmpi-dev openmpi-bin"
 docs="python3 mkdocs mkdocs-material libjs-katex fonts-katex"
 packages="python3 patchelf"
 deb="python3 dpkg-dev debhelper dh-python help2man lintian"

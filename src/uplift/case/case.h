@@ -9,6 +9,7 @@
 
 #include "uplift/base/declare.h"
 #include "uplift/case/build/records.h"
+#include "uplift/case/constant_loads.h"
 #include "uplift/case/schema/case_table.h"
 #include "uplift/case/schema/verdict_quantities.h"
 #include "uplift/mesh/split.h"
@@ -155,9 +156,7 @@ struct BuiltCase {
   double tuned_mass = 0;                               // kg: of the tuned point mass, 0 without
   std::vector<FunctionUse> functions;                  // of all that moves or loads the model
   bool laws_of_step = false;                           // some behaviour made here depends on the step
-  // N: resultant, against the mean normal of the first interface, of the dead loads on everything that is connected to its upper side (the
-  // soil too where the surface ends inside it)
-  double weight = 0;
+  std::vector<ConstantLoads> constant_loads;           // one per interface (the soil's too where a surface ends inside it)
   // Nodes whose motion is shown: the one that the case names, or the highest one of the structure; the first interface's body
   int top = -1, base = -1;
   Vec3 top_arm = Vec3::Zero();  // m, from the node `top` to the top: the centre of mass of a rigid body that has no node as high, else zero
@@ -170,6 +169,8 @@ struct BuiltCase {
   int base_turn() const { return base < 0 ? -1 : model.at(base, model.space.dimension == 2 ? rz : sway == ux ? ry : rx); }
   Place top_place() const { return model.nodes[static_cast<std::size_t>(top)].position + top_arm; }  // where there is one
   std::string name_of_top() const;  // "node t", "the centre of mass of m"; empty: there is none
+  /// N: of the constant loads on what the first interface carries, against its mean normal.
+  double weight() const { return constant_loads.empty() ? 0 : constant_loads.front().all.force; }
   /// The interface's moment and rotation that go with the sway.
   Request::Kind base_moment() const;
   Request::Kind base_rotation() const;

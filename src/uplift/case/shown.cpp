@@ -161,24 +161,7 @@ Dof sway_of(const Model& model) {
         const int unknown = model.kept[static_cast<std::size_t>(i)];
         if (!model.space.is_rotation(unknown)) size[model.space.index_of(unknown)] += std::abs(time_load.shape[i]);
       }
-  return size.y() > size.x() ? uy : ux;
-}
-
-/// See BuiltCase::weight.
-double weight_of(const BuiltCase& built) {
-  const Model& model = built.model;
-  if (model.interfaces.empty()) return 0;
-  const Vec3 normal = mean_normal(model.interfaces.front());
-  const std::vector<char> carried = part_of(model, built.facts.front().upper);
-  double weight = 0;
-  for (std::size_t i = 0; i < model.time_loads.size(); ++i) {
-    if (!model.time_loads[i].dead) continue;
-    for (int node = 0; node < static_cast<int>(carried.size()); ++node)
-      if (carried[static_cast<std::size_t>(node)])
-        for (int k = 0; k < model.space.dimension; ++k)
-          weight -= model.assembly.loads[i].coeff(model.space.unknowns() * node + k) * normal[k];
-  }
-  return weight;
+  return size.y() > (1 + 1e-9) * size.x() ? uy : ux;  // of equal ones the first, whatever the order of the sums
 }
 
 }  // namespace
@@ -190,7 +173,8 @@ void find_shown(const Case& read, const CaseNames& names, BuiltCase& built) {
   if (built.top >= 0) rename_shown(built.top, "top", built.model);
   if (built.base >= 0) rename_shown(built.base, "base", built.model);
   built.sway = sway_of(built.model);
-  built.weight = weight_of(built);
+  for (std::size_t k = 0; k < built.facts.size(); ++k)
+    built.constant_loads.push_back(constant_loads(built.model, built.model.interfaces[k], built.facts[k]));
 }
 
 std::string BuiltCase::name_of_top() const {

@@ -70,7 +70,7 @@ void print(const LoadedCase& loaded, const CheckedCase& checked) {
       for (const std::string& repair : motion.repairs) line("  mended", repair);
     for (const std::string& step : motion.processing) line("  processed", step);
   }
-  if (!built.facts.empty()) line("dead load on the base", format_quantity(built.weight, "N"));
+  if (!built.facts.empty()) line("dead load on the base", format_quantity(built.weight(), "N"));
   if (!found.fixed.empty()) line("frequencies, fixed base", list_hz(found.fixed));
   line("frequencies, bonded base", found.bonded.empty() && built.model.distributed != nullptr
                                        ? std::string("not computed: they need a factor on one process")

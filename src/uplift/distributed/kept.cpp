@@ -10,6 +10,7 @@
 #include "uplift/distributed/messages.h"
 #include "uplift/distributed/rank_elements.h"
 #include "uplift/distributed/ranks.h"
+#include "uplift/linear/memory.h"
 #include "uplift/model/element_sum.h"
 
 namespace uplift {
@@ -182,6 +183,8 @@ std::vector<Ranks::Kept> Ranks::keep_together(const Order& order, const Shares* 
     const auto entries = static_cast<double>(rows.columns.nonZeros());
     MPI_Gather(&entries, 1, MPI_DOUBLE, matrix.entries.data(), 1, MPI_DOUBLE, 0, ranks_);
   }
+  mine.reset();
+  give_back_free_memory();
   return kept;
 }
 

@@ -7,6 +7,7 @@
 #include "uplift/cli/console.h"
 #include "uplift/distributed/petsc.h"
 #include "uplift/distributed/ranks.h"
+#include "uplift/linear/memory.h"
 
 namespace {
 
@@ -33,6 +34,7 @@ int main(int count, char** words) {
   const uplift::Petsc petsc;
   if (petsc.rank() > 0) {
     leave_signals_to_rank_0();
+    uplift::prepare_heap();
     uplift::Ranks::all().serve();
     return 0;
   }

@@ -17,6 +17,7 @@
 #include "uplift/distributed/messages.h"
 #include "uplift/distributed/petsc.h"
 #include "uplift/distributed/ranks.h"
+#include "uplift/linear/memory.h"
 
 namespace uplift {
 
@@ -41,6 +42,10 @@ PartitionGraph::PartitionGraph(std::vector<PetscInt> unknowns, std::vector<std::
           take(member[m]);
     }
   };
+  std::int64_t neighbours = 0;
+  for (std::size_t vertex = 0; vertex < vertices; ++vertex) each_neighbour(vertex, [&](PetscInt) { ++neighbours; });
+  if (neighbours > PETSC_MAX_INT) return;
+  std::ranges::fill(seen, -1);
   PetscMalloc1(vertices + 1, &first_);
   first_[0] = 0;
   for (std::size_t vertex = 0; vertex < vertices; ++vertex) {
@@ -64,7 +69,9 @@ PartitionGraph::~PartitionGraph() {
 
 std::vector<PetscInt> PartitionGraph::divide(PetscInt parts) const {
   constexpr double most = 1.05;  // imbalance
-  std::vector<PetscInt> by_number = ranges(parts), by_graph = partition(parts);
+  std::vector<PetscInt> by_number = ranges(parts);
+  if (graph_ == nullptr) return by_number;
+  std::vector<PetscInt> by_graph = partition(parts);
   const bool balanced = !by_graph.empty() && imbalance(by_graph, parts) <= std::max(most, imbalance(by_number, parts));
   return balanced && halo(by_graph) < halo(by_number) ? by_graph : by_number;
 }
@@ -99,6 +106,7 @@ PetscErrorCode PartitionGraph::ask_ptscotch(PetscInt parts, std::vector<PetscInt
   PetscCall(MatPartitioningSetType(partitioning, MATPARTITIONINGPTSCOTCH));
   PetscCall(MatPartitioningSetNParts(partitioning, parts));
   PetscCall(MatPartitioningSetVertexWeights(partitioning, unknowns));
+  SCOTCH_randomSeed(1);  // of builds that take the time for it
   SCOTCH_randomReset();  // else it goes on where the last partition has left the random numbers
   PetscCall(MatPartitioningApply(partitioning, &found));
   const PetscInt* numbers = nullptr;
@@ -203,6 +211,7 @@ std::vector<int> Ranks::divide_together(const Order& order, const CoupledVertice
     receive(part.data(), order.rows, MPI_INT, ranks_, last);
   } else if (rank_ == last) {
     part = receive_graph(order.rows, ranks_).divide(count_);
+    give_back_free_memory();
     send(part.data(), order.rows, MPI_INT, 0, ranks_);
   }
   return part;

@@ -27,7 +27,7 @@ class PartitionGraph {
  private:
   PetscErrorCode ask_ptscotch(PetscInt parts, std::vector<PetscInt>& part) const;
   std::vector<PetscInt> unknowns_;
-  Mat graph_ = nullptr;                               // owns the lists:
+  Mat graph_ = nullptr;                               // null: more neighbours than PETSc counts. It owns the lists:
   PetscInt *first_ = nullptr, *neighbour_ = nullptr;  // neighbours of each vertex, ascending
 };
 

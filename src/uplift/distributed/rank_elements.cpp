@@ -113,7 +113,8 @@ class ElementSender {
     writer_.end_record();
   }
   int number_of(const SolidSection& section) {
-    const auto known = std::ranges::find(sections_, &section);
+    // a group has one section, yielding cells a copy each
+    const auto known = std::ranges::find_if(sections_, [&](const SolidSection* one) { return one == &section || *one == section; });
     const auto number = static_cast<int>(known - sections_.begin());
     if (known != sections_.end()) return number;
     sections_.push_back(&section);

@@ -52,7 +52,8 @@ BulkCost predict_bulk(const Model& model, const LinearSolver& solver, const Bulk
     const OwnedSum step = matrix_sum(model, 1, use.damping, use.mass);
     cost.step = predict(solver, step, touched);
     cost.step.working_bytes += bytes_of(step.here);
-    if (const auto other = use.statics ? solver_for_statics(solver, {}) : nullptr) statics = predict(*other, step, touched);
+    if (const auto other = use.statics ? solver_for_statics(solver, {}) : nullptr)
+      statics = predict(*other, matrix_sum(model, 1, 0, 0), touched);
     statics.working_bytes += bytes_of(step.here);
   }
   {

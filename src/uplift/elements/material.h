@@ -18,6 +18,7 @@ struct ElasticMaterial {
   double young = 0;    // E [Pa], > 0
   double poisson = 0;  // nu, in (-1, 0.5)
   double density = 0;  // rho [kg/m3], >= 0
+  bool operator==(const ElasticMaterial&) const = default;
 
   double shear() const { return young / (2 * (1 + poisson)); }                           // G = mu [Pa]
   double lame() const { return young * poisson / ((1 + poisson) * (1 - 2 * poisson)); }  // lambda [Pa]

@@ -21,6 +21,7 @@ struct SolidSection {
   double thickness = 1;                   // m, surface cells only
   enum class Mass { none, consistent, lumped } mass = Mass::consistent;
   bool incompatible_modes = true;  // quad4 and hex8 only
+  bool operator==(const SolidSection&) const = default;
 };
 
 struct PointGradient;  // elements/solid_rules.h

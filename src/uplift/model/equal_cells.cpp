@@ -12,12 +12,6 @@ namespace uplift {
 
 namespace {
 
-bool same_section(const SolidSection& one, const SolidSection& other) {
-  return one.material.young == other.material.young && one.material.poisson == other.material.poisson &&
-         one.material.density == other.material.density && one.plane == other.plane && one.thickness == other.thickness &&
-         one.mass == other.mass && one.incompatible_modes == other.incompatible_modes;
-}
-
 /// Finds the class of one element after another.
 class Classes {
  public:
@@ -40,7 +34,7 @@ class Classes {
  private:
   const Vec3& at(int node) const { return nodes_[static_cast<std::size_t>(node)].position; }
   bool equal(const Solid& one, const Solid& other) const {
-    if (one.cell() != other.cell() || one.beta != other.beta || !same_section(*one.continuum(), *other.continuum())) return false;
+    if (one.cell() != other.cell() || one.beta != other.beta || *one.continuum() != *other.continuum()) return false;
     const std::span<const int> nodes = one.nodes(), others = other.nodes();
     for (std::size_t a = 1; a < nodes.size(); ++a)
       if (((at(nodes[a]) - at(nodes[0])) - (at(others[a]) - at(others[0]))).cwiseAbs().maxCoeff() > room_) return false;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "uplift/math/sparse_solvers.h"
+#include "uplift/model/reduced.h"
 
 namespace uplift {
 namespace {
@@ -106,7 +107,7 @@ void ForceModel::add_work(const Weights& motion, ForceRow& row) const {
         add(weight * entry.value(), static_cast<int>(entry.row()), row.displacement);
     add(weight, unknown, row.yielding);
     const Sparse::InnerIterator free(model.expansion, unknown);
-    if (!free || model.kept[static_cast<std::size_t>(free.row())] != unknown) continue;
+    if (!free || is_reduced(model) || model.kept[static_cast<std::size_t>(free.row())] != unknown) continue;
     const auto column = static_cast<int>(free.row());
     if (stage_.held != nullptr && stage_.held->size() > 0) row.constant -= weight * (*stage_.held)[column];
     if (assembly.modal_damping.cols() > 0)

@@ -255,7 +255,7 @@ void renumber(const std::vector<int>& number, RunState& run) {
 
 namespace {
 
-constexpr std::string_view magic = "uplift run state 8\n";
+constexpr std::string_view magic = "uplift run state 9\n";
 
 }  // namespace
 

@@ -93,7 +93,7 @@ std::string check_json(const LoadedCase& loaded, const CheckedCase& checked) {
         .member("bytes_per_frame", static_cast<long>(found.fields->size.per_frame))
         .member("bytes", static_cast<long>(found.fields->bytes()))
         .end_object();
-  if (!built.facts.empty()) json.member("weight", built.weight);
+  if (!built.facts.empty()) json.member("weight", built.weight());
   json.key("frequencies_fixed_base")
       .numbers(found.fixed)
       .key("frequencies_bonded")

@@ -31,7 +31,7 @@ BaseOverTime::BaseOverTime(const BuiltCase& built, const RunResult& result, std:
     const bool plane = interface.space.dimension == 2;
     rest = thrust_of(interface.space, sum.axial, plane ? sum.moment : sum.moment_1, sum.moment_2);
   } else if (built.bases() == 1) {
-    rest.force = built.weight;
+    rest.force = built.weight();
   }
   find_what_stabilises(built);
   const auto square = [](double axial, double shear_1, double shear_2) { return axial * axial + shear_1 * shear_1 + shear_2 * shear_2; };
@@ -45,15 +45,20 @@ BaseOverTime::BaseOverTime(const BuiltCase& built, const RunResult& result, std:
   least_force = std::max(noise_share * std::sqrt(largest_change), round_off_share * largest_force);
 }
 
-/// The weight, where this base alone bears the constant loads: they then give the thrust at rest.
+/// The weight, where this base alone bears the constant loads: they then give the thrust at rest. Without a static stage one base is taken
+/// to bear them.
 void BaseOverTime::find_what_stabilises(const BuiltCase& built) {
   stabilises = rest;
   if (!(rest.force > 0)) return;
-  const ConstantLoads loads = constant_loads(built, index);
+  const ConstantLoads& loads = built.constant_loads[index];
+  if (run.steps.rest.empty()) {
+    if (built.bases() == 1) stabilises = loads.weight;
+    return;
+  }
   const double arm = std::max(shape.width[0], shape.width[1]);
   const bool leans = std::ranges::any_of(built.plan.stages, &Stage::p_delta);  // the moment of the weight that has moved
   const double tolerance = leans ? 0.02 : 1e-3;
-  bool alone = !run.steps.rest.empty() && built.bases() == 1 && std::abs(loads.all.force - rest.force) <= 1e-3 * rest.force;
+  bool alone = built.bases() == 1 && std::abs(loads.all.force - rest.force) <= 1e-3 * rest.force;
   for (std::size_t k = 0; k < 2; ++k) alone = alone && std::abs(loads.all.first[k] - rest.first[k]) <= tolerance * rest.force * arm;
   if (alone)
     stabilises = loads.weight;

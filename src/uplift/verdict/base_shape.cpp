@@ -6,8 +6,6 @@
 #include <optional>
 #include <ranges>
 
-#include "uplift/case/mesh/mesh.h"
-
 namespace uplift {
 namespace {
 
@@ -68,64 +66,6 @@ std::optional<double> diameter_of(const std::vector<Point>& hull) {
 }
 
 }  // namespace
-
-Thrust thrust_of(Space space, double axial, double moment_1, double moment_2) {
-  if (space.dimension == 2) return {-axial, {-moment_1, 0}};
-  return {-axial, {moment_2, -moment_1}};
-}
-
-double ConstantLoads::lateral() const {
-  return std::hypot(all.first[0] - weight.first[0], all.first[1] - weight.first[1]);
-}
-
-ConstantLoads constant_loads(const BuiltCase& built, std::size_t base) {
-  const Model& model = built.model;
-  const Interface& interface = model.interfaces[base];
-  const Space space = model.space;
-  const Vec3 normal = mean_normal(interface), up = model.up();
-  const std::vector<char> carried = part_of(model, built.facts[base].upper);
-  const auto thrust = [&](const SparseVector& load, bool vertical) {
-    Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
-    for (SparseVector::InnerIterator entry(load); entry; ++entry) {
-      const int unknown = static_cast<int>(entry.index()), node = space.node_of(unknown), k = space.index_of(unknown);
-      if (!carried[static_cast<std::size_t>(node)]) continue;
-      Vec3 part = entry.value() * space.axis(k);
-      if (space.is_rotation(k)) {
-        if (!vertical) moment += part;
-      } else {
-        if (vertical) part = part.dot(up) * up;
-        force += part;
-        moment += cross(model.nodes[static_cast<std::size_t>(node)].position - interface.reference, part);
-      }
-    }
-    const bool plane = space.dimension == 2;
-    return thrust_of(space, force.dot(normal), plane ? moment.z() : moment.dot(local_axis(space, normal, 0)),
-                     plane ? 0 : moment.dot(local_axis(space, normal, 1)));
-  };
-  const auto add = [](Thrust& sum, const Thrust& part) {
-    sum.force += part.force;
-    for (std::size_t k = 0; k < 2; ++k) sum.first[k] += part.first[k];
-  };
-  ConstantLoads made;
-  for (std::size_t i = 0; i < model.time_loads.size(); ++i) {
-    const TimeLoad& load = model.time_loads[i];
-    if (!load.dead) continue;
-    const SparseVector& pattern = model.assembly.loads[i];
-    const Thrust whole = thrust(pattern, false);
-    add(made.all, whole);
-    const bool is_gravity = i == 0 && !model.assembly.gravity.isZero();
-    if (is_gravity || load.name == "water pressure in " + interface.name) {
-      add(made.weight, whole);
-      continue;
-    }
-    double upwards = 0;  // N
-    for (SparseVector::InnerIterator entry(pattern); entry; ++entry)
-      if (const int k = space.index_of(static_cast<int>(entry.index())); !space.is_rotation(k))
-        upwards += entry.value() * up.dot(space.axis(k));
-    if (upwards < 0) add(made.weight, thrust(pattern, true));
-  }
-  return made;
-}
 
 BaseShape::BaseShape(const Model& model, const Interface& interface, const InterfaceFacts& facts) {
   std::vector<Place> corners = facts.corners;

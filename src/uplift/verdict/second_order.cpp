@@ -37,23 +37,9 @@ double swaying_weight(const BuiltCase& built) {
   if (built.top < 0 || built.base < 0 || built.facts.empty()) return 0;
   const double foot = height_of(model, built.base), height = built.top_place().dot(model.up()) - foot;
   if (!(height > 0)) return 0;
-  const std::vector<char> carried = part_of(model, built.facts.front().upper);
   double sum = 0;  // N m
-  for (std::size_t i = 0; i < model.time_loads.size(); ++i) {
-    if (!model.time_loads[i].dead) continue;
-    for (int node = 0; node < static_cast<int>(carried.size()); ++node)
-      if (const double above = height_of(model, node) - foot; carried[static_cast<std::size_t>(node)] && above > 0)
-        for (int axis = 0; axis < model.space.dimension; ++axis)
-          sum -= model.assembly.loads[i].coeff(model.space.unknowns() * node + axis) * model.up()[axis] * above;
-  }
-  for (const auto& element : model.elements) {  // gravity acts at the centre of a mass, not at its node
-    const int node = element->nodes()[0];
-    if (!carried[static_cast<std::size_t>(node)] || element->first_moment().isZero(0)) continue;
-    Matrix mass;
-    element->form({.mass = &mass});
-    const double above = height_of(model, node) - foot, of_centre = above + element->first_moment().dot(model.up()) / mass(0, 0);
-    sum += mass(0, 0) * model.assembly.gravity.norm() * (std::max(of_centre, 0.0) - std::max(above, 0.0));
-  }
+  for (const auto& [weight, at] : weights_at_heights(model, part_of(model, built.facts.front().upper)))
+    sum += weight * std::max(0.0, at - foot);
   return sum / height;
 }
 

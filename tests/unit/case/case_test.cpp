@@ -81,7 +81,7 @@ TEST(Case, FindsTopBaseAndWeight) {
   const BuiltCase built = build(file, runs_of_case(file).front());
   EXPECT_EQ(built.model.nodes[static_cast<std::size_t>(built.top)].name, "top");
   EXPECT_EQ(built.model.nodes[static_cast<std::size_t>(built.base)].name, "base");
-  EXPECT_DOUBLE_EQ(built.weight, 1e6);
+  EXPECT_DOUBLE_EQ(built.weight(), 1e6);
   double half_width = 0;
   for (const Place& corner : built.facts.front().corners) half_width = std::max(half_width, std::abs(corner[0]));
   EXPECT_DOUBLE_EQ(half_width, 1.5);

@@ -50,7 +50,7 @@ constexpr double effective = weight - 20 * unit_weight * width;
 
 TEST(WaterUnderABase, CarriesItsShareOfTheWeight) {
   const BuiltCase built = built_of(block(head, 0));
-  EXPECT_NEAR(built.weight, effective, 1e-9 * weight);
+  EXPECT_NEAR(built.weight(), effective, 1e-9 * weight);
   const RunResult result = run_of(built);
   EXPECT_NEAR(last(result, "base.axial"), -effective, 1e-9 * weight);
   EXPECT_NEAR(result.max_pressure.value, effective / width, 1e-9 * weight / width);

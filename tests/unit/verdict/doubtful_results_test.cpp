@@ -5,6 +5,7 @@
 
 #include "tower_case.h"
 #include "unit/verdict/verdict_support.h"
+#include "uplift/case/advice/swaying_solids.h"
 #include "uplift/verdict/compare_motions.h"
 #include "uplift/verdict/edge_warnings.h"
 #include "uplift/verdict/second_order.h"
@@ -163,6 +164,12 @@ TEST(SecondOrderEffects, SolidsHaveNoneWithPDeltaEither) {
         << effects.warning();
     EXPECT_EQ(warned(text, "p_delta computes no second-order effects of solids, and 100 % of"), p_delta);
   }
+  // 1000 t whose centre is 20 m above the top of the block, on a node of that top: nearly all of the moment arises above the solids
+  const std::string high = block_of_solids("",
+                                           "[nodes]\nn = [0, 10]\n[[rigid]]\nnode = \"n\"\ngroup = \"block_top\"\nmass = 1e6\ninertia = "
+                                           "1e6\ncentre = [0, 30]\n");
+  const double of_block = 2 * 10 * 1000 * 5.0, of_mass = 1e6 * 30;  // kg m, about the foot
+  EXPECT_NEAR(second_order_of_solids(built_of(high)), (of_block + 1e6 * 10) / (of_block + of_mass), 1e-3);
   std::string rigid = block_of_solids("", "[nodes]\nm = [0, 1]\n[[rigid]]\nnode = \"m\"\ngroup = \"block\"\n");
   rigid.replace(rigid.find("step = 0.02\n"), 12, "step = 0.02\np_delta = true\n");
   EXPECT_FALSE(warned(rigid, "p_delta computes no"));

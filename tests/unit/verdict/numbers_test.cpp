@@ -389,6 +389,14 @@ TEST(VerdictNumbers, ConstantPushOverturns) {
   const VerdictNumbers numbers = numbers_of(built, run, nullptr);
   EXPECT_NEAR(number(numbers, "min_overturning_safety"), 34e3 * 9.81 * 1.5 / 250e3, 0.02);
   EXPECT_EQ(numbers.interfaces.front().counted_as_weight, 0);
+  // without a static stage one base bears them, too: 500.31 kN m hold, and only what the ramp adds to nothing pushes at first
+  BuiltCase at_once = built_of(std::regex_replace(text(""), std::regex(R"(\[\[stage\]\]\ntype = "static"\n)"), ""));
+  const RunResult struck = run_of(at_once);
+  const BaseOverTime base(at_once, struck, 0);
+  EXPECT_TRUE(struck.steps.rest.empty());
+  EXPECT_NEAR(base.stabilises.force, 34e3 * 9.81, 1e-6);
+  EXPECT_NEAR(base.stabilises.first[0], 0, 1e-6);
+  EXPECT_EQ(base.counted_as_weight, 0);
   const BuiltCase held = built_of(text("[[spring]]\nname = \"stay\"\nnodes = [\"top\"]\ndirection = [1, 0]\nstiffness = 1e7\n"));
   const VerdictNumbers shared = numbers_of(held, run_of(held), nullptr);
   EXPECT_NEAR(shared.interfaces.front().counted_as_weight, 200e3, 1);
@@ -409,13 +417,14 @@ TEST(VerdictNumbers, WhatStabilises) {
       "law = { type = \"springs\", K_n = 2e8, K_t = 1e8 }\n[[load]]\nnode = \"base\"\nforce = [2e5, -1e6]\nmoment = -3e5\n"
       "[[load]]\nnode = \"side\"\nforce = [5e4, -2e5]\n"
       "[[stage]]\ntype = \"static\"\n");
-  const std::optional<ConstantLoads> loads = constant_loads(built, 0);
-  ASSERT_TRUE(loads);
-  EXPECT_NEAR(loads->weight.force, 1.2e6 - 3e5, 1e-6);
-  EXPECT_NEAR(loads->weight.first[0], 2e5 * 0.5, 1e-6);
-  EXPECT_NEAR(loads->all.first[0], 2e5 * 0.5 + 5e4 * 1 + 3e5, 1e-6);
-  EXPECT_NEAR(loads->lateral(), 3.5e5, 1e-6);
+  ASSERT_EQ(built.constant_loads.size(), 1u);
+  const ConstantLoads& loads = built.constant_loads.front();
+  EXPECT_NEAR(loads.weight.force, 1.2e6 - 3e5, 1e-6);
+  EXPECT_NEAR(loads.weight.first[0], 2e5 * 0.5, 1e-6);
+  EXPECT_NEAR(loads.all.first[0], 2e5 * 0.5 + 5e4 * 1 + 3e5, 1e-6);
+  EXPECT_NEAR(loads.lateral(), 3.5e5, 1e-6);
 }
 
 }  // namespace
 }  // namespace uplift::numbers_test
+#include <regex>

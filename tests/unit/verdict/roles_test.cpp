@@ -230,7 +230,7 @@ TEST(VerdictRoles, OneGroupIsDividedByItsNormals) {
   EXPECT_EQ(built.facts[1].role, Role::wall);
   EXPECT_NEAR(built.facts[0].area, 4, 1e-12);
   EXPECT_NEAR(built.facts[1].area, 4, 1e-12);
-  EXPECT_NEAR(built.weight, 2e5, 1e-6);
+  EXPECT_NEAR(built.weight(), 2e5, 1e-6);
   const RunResult run = run_of(built);
   ASSERT_EQ(run.status, RunStatus::completed) << run.reason;
   const VerdictNumbers numbers = numbers_of(built, run, nullptr);
@@ -289,7 +289,7 @@ type = "static"
 )");
   ASSERT_EQ(built.facts.size(), 1u);
   EXPECT_EQ(built.facts[0].role, Role::base);
-  EXPECT_NEAR(built.weight, 2e5, 1e-6);  // not its part along the normal of one side, 1.73e5
+  EXPECT_NEAR(built.weight(), 2e5, 1e-6);  // not its part along the normal of one side, 1.73e5
   const RunResult run = run_of(built);
   ASSERT_EQ(run.status, RunStatus::completed) << run.reason;
   const VerdictNumbers numbers = numbers_of(built, run, nullptr);

@@ -69,7 +69,7 @@ BuiltCase footing() {
   built.plan.combined = {{.name = "top", .components = {{}}}};
   InterfaceFacts& facts = built.facts.emplace_back();
   facts.name = "soil", facts.body = "base", facts.friction = 0.5, facts.area = 3;
-  built.weight = 1e6;
+  built.constant_loads = {{.all = {1e6, {}}, .weight = {1e6, {}}}};
   built.plan.stages.emplace_back().type = Stage::Type::dynamics;
   return built;
 }

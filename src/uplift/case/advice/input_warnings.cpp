@@ -68,7 +68,7 @@ void warn_damping(const std::optional<CaseDamping>& damping, std::vector<std::st
 void warn_upward_gravity(const CaseInput& input, const BuiltCase& built, std::vector<std::string>& said) {
   const std::optional<CaseGravity>& gravity = input.gravity;
   const int up = input.space.dimension - 1;
-  if (!gravity || !(gravity->acceleration[up] > 0) || built.weight > 0 || input.interfaces.empty()) return;
+  if (!gravity || !(gravity->acceleration[up] > 0) || built.weight() > 0 || input.interfaces.empty()) return;
   said.push_back(
       place_of(*gravity->table, "acceleration") +
       fmt::format("gravity acts upwards, along +{}, and presses no base onto the ground; is its sign right?", up == 1 ? "y" : "z"));
@@ -110,11 +110,11 @@ void warn_size(const BuiltCase& built, std::vector<std::string>& said) {
     said.push_back(fmt::format("the model extends over {:g} m: nodes are given in metres; is the unit right?", size));
   double area = 0;
   for (std::size_t k = 0; k < built.bases(); ++k) area += built.facts[k].area;
-  if (area > 0 && built.weight > 0 && built.weight / area < least_pressure)
+  if (area > 0 && built.weight() > 0 && built.weight() / area < least_pressure)
     said.push_back(
         fmt::format("the dead load of {} presses the base with {} alone, less than a floor slab: masses are given in kg (1 t is "
                     "1000 kg); are the units right?",
-                    format_quantity(built.weight, "N"), format_quantity(built.weight / area, "Pa")));
+                    format_quantity(built.weight(), "N"), format_quantity(built.weight() / area, "Pa")));
 }
 
 /// Names of functions that drive the run.

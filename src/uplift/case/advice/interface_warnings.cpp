@@ -49,17 +49,17 @@ void warn_gaps(const BuiltCase& built, std::vector<std::string>& said) {
 void warn_sides_exchanged(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
   const std::vector<CaseInterface>& interfaces = read.input->interfaces;
   const CaseSurface* surface = interfaces.size() == 1 ? interfaces.front().surface() : nullptr;
-  if (!surface || !(built.weight < 0)) return;
+  if (!surface || !(built.weight() < 0)) return;
   if (interfaces.front().water || !surface->group) return;  // see warn_floating
   said.push_back(fmt::format("{}:{}: the dead load of {} pulls the upper side off the lower one: does `lower` name the side that bears?",
-                             surface->where("lower").file, surface->where("lower").line, format_quantity(-built.weight, "N")));
+                             surface->where("lower").file, surface->where("lower").line, format_quantity(-built.weight(), "N")));
 }
 
 void warn_floating(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
   const auto wet = [](const CaseInterface& interface) { return interface.water.has_value(); };
-  if (built.weight > 0 || std::ranges::none_of(read.input->interfaces, wet)) return;
+  if (built.weight() > 0 || std::ranges::none_of(read.input->interfaces, wet)) return;
   said.push_back(fmt::format("the water pressure exceeds the dead load on \"{}\" by {}: the structure floats", built.facts.front().name,
-                             format_quantity(-built.weight, "N")));
+                             format_quantity(-built.weight(), "N")));
 }
 
 bool states_all_stiffnesses(const Values& model, Space space) {
@@ -81,11 +81,11 @@ void warn_foundations(const Case& read, const BuiltCase& built, std::vector<std:
     if (ground == nullptr || !ground->surfaces().has_bearing()) continue;
     constexpr double least_reserve = 1.05;
     const double capacity = ground->surfaces().strength().ultimate, service = ground->surfaces().strength().service;
-    const std::string_view outcome = built.weight >= capacity ? "unless other parts bear the rest, there is no equilibrium"
-                                                              : "hardly any moment or horizontal force is left to it without settlement";
-    if (least_reserve * built.weight >= std::min(capacity, service))
-      said.push_back(place + fmt::format("the dead load is {}, the capacity of \"{}\" {}: {}", format_quantity(built.weight, "N"),
-                                         foundation.name.name, format_quantity(built.weight >= capacity ? capacity : service, "N"),
+    const std::string_view outcome = built.weight() >= capacity ? "unless other parts bear the rest, there is no equilibrium"
+                                                                : "hardly any moment or horizontal force is left to it without settlement";
+    if (least_reserve * built.weight() >= std::min(capacity, service))
+      said.push_back(place + fmt::format("the dead load is {}, the capacity of \"{}\" {}: {}", format_quantity(built.weight(), "N"),
+                                         foundation.name.name, format_quantity(built.weight() >= capacity ? capacity : service, "N"),
                                          outcome));
   }
 }
@@ -101,15 +101,15 @@ void warn_settlement(const BuiltCase& built, std::vector<std::string>& said) {
     base.law->closed_stiffness(base.batch.components, of_area.data());
     stiffness += of_area[static_cast<std::size_t>(base.batch.translations()) - 1] * built.facts[k].area;
   }
-  if (stiffness > 0 && built.weight / stiffness > most)
+  if (stiffness > 0 && built.weight() / stiffness > most)
     said.push_back(fmt::format("the dead load of {} compresses the joint by {}: is the unit of its normal stiffness right?",
-                               format_quantity(built.weight, "N"), format_quantity(built.weight / stiffness, "m")));
+                               format_quantity(built.weight(), "N"), format_quantity(built.weight() / stiffness, "m")));
 }
 
 /// A base that nothing but the shaking holds.
 void warn_unloaded(const Case& read, const BuiltCase& built, std::vector<std::string>& said) {
   const bool shaken = !read.input->grounds.empty() || !read.input->motions.empty();
-  if (!shaken || built.weight != 0 || built.bases() == 0 || !read.input->loads.empty()) return;
+  if (!shaken || built.weight() != 0 || built.bases() == 0 || !read.input->loads.empty()) return;
   const auto presses = [](const PrescribedMotion& motion) { return !motion.opening.isZero(0); };  // or lifts it, as is asked for
   if (std::ranges::any_of(built.model.motions, presses)) return;
   const auto opens = [](const Interface& each) {  // see warn_closure for laws with a closure stress
@@ -326,7 +326,7 @@ void warn_cuts(const Case& read, const BuiltCase& built, std::vector<std::string
 void warn_closure(const BuiltCase& built, std::vector<std::string>& said) {
   double area = 0;
   for (const InterfaceFacts& facts : built.facts) area += facts.area;
-  const double mean = area > 0 ? built.weight / area : 0;
+  const double mean = area > 0 ? built.weight() / area : 0;
   for (std::size_t k = 0; k < built.behaviours.size(); ++k) {
     const Values& law = *built.behaviours[k];
     const Interface& interface = built.model.interfaces[k];
