@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <regex>
 
 #include "tower_case.h"
 #include "unit/verdict/strip_support.h"
