@@ -90,7 +90,7 @@ TEST(Case, FindsTopBaseAndWeight) {
 
 TEST(Case, GravityWeighsAllMasses) {
   const Case file = read("[gravity]\nacceleration = [0, \"-10 m/s2\"]\n", changed("tuned_frequency = \"10 Hz\"", "mass = 3e4"));
-  EXPECT_NEAR(build(file, runs_of_case(file).front()).weight, 1e6 + 10 * (3e4 + 1e4), 1e-3);
+  EXPECT_NEAR(build(file, runs_of_case(file).front()).weight(), 1e6 + 10 * (3e4 + 1e4), 1e-3);
 }
 
 TEST(Case, AutomaticColumnsAreThoseThatMove) {

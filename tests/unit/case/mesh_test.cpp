@@ -129,7 +129,7 @@ TEST(CaseMesh, DeadLoadIsThatOfTheBlockAlone) {
   const BuiltCase built = build(read_text(column_text(3e7, side_supports), column(Cell::quad4)), RunSpec{});
   EXPECT_NEAR(built.weight(), block_density * gravity * height * 2, 1e-6);
   const std::string roof = "[[load]]\nname = \"roof\"\ngroup = \"block_top\"\ntraction = [3, -500]\n";
-  EXPECT_NEAR(build(read_text(column_text(3e7, side_supports + roof), column(Cell::quad4)), RunSpec{}).weight,
+  EXPECT_NEAR(build(read_text(column_text(3e7, side_supports + roof), column(Cell::quad4)), RunSpec{}).weight(),
               (block_density * gravity * height + 500) * 2, 1e-6);
 }
 
