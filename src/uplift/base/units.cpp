@@ -2,6 +2,7 @@
 
 #include <udunits2.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -336,7 +337,9 @@ Quantity convert(std::string_view text, double number, std::string_view unit, st
   }
   if (unit == "g" && dimension_name(wanted_unit) == "an acceleration") return refused(text, "g is the gram; standard gravity is g_n");
   std::string what = dimension_of(system, found);
-  if (convertible(system.parse("(" + std::string(unit) + ") m/s2"), wanted)) what += "; the forces of kg, t and lb are kgf, tf and lbf";
+  constexpr std::string_view masses[] = {"a mass", "a mass per length", "a mass per area", "a density"};
+  if (std::ranges::find(masses, what) != std::end(masses) && convertible(system.parse("(" + std::string(unit) + ") m/s2"), wanted))
+    what += "; the forces of kg, t and lb are kgf, tf and lbf";
   return refused(text, what);
 }
 

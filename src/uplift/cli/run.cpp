@@ -40,7 +40,7 @@ void say_criteria(const VerdictNumbers& numbers) {
     say(fmt::format(
         "criterion {}: {}{} {}, at {} {} ({}){}", to_string(result.state), quantity.brief, of, value_text(numbers, result),
         quantity.at_least ? "least" : "most", format_value(quantity, result.criterion.limit), result.criterion.source,
-        result.within_step_change ? "; not certain: twice the step changes the value by as much as it is away from the limit" : ""));
+        result.within_step_change ? "; not certain: doubling the step changes the value by at least its distance from the limit" : ""));
   }
 }
 

@@ -109,6 +109,16 @@ std::vector<RigidPart> rigid_parts(const Model& model) {
   return parts;
 }
 
+std::vector<bool> tied_nodes(const Model& model) {
+  std::vector<bool> tied(model.nodes.size(), false);
+  for (const Assembly::Tie& tie : model.assembly.ties) tied[tie.slave] = true;
+  return tied;
+}
+
+bool is_one_body(const std::vector<int>& nodes, const std::vector<bool>& tied) {
+  return nodes.size() == 1 || (!nodes.empty() && std::ranges::all_of(nodes, [&](int node) { return tied[node]; }));
+}
+
 std::vector<char> moved_by_solid_mass(const Model& model) {
   std::vector<char> massive(model.nodes.size(), 0);
   for (const auto& element : model.elements)

@@ -16,6 +16,11 @@ struct RigidPart {
 /// A node may belong to several parts: it is then a hinge between them.
 std::vector<RigidPart> rigid_parts(const Model& model);
 
+/// Whether rigid ties make each node follow another.
+std::vector<bool> tied_nodes(const Model& model);
+/// Whether nodes move as one body: a single one, or tied ones. `tied`: tied_nodes().
+bool is_one_body(const std::vector<int>& nodes, const std::vector<bool>& tied);
+
 /// Whether each free unknown is a translation of a node with a part of a solid's mass matrix, which is positive definite.
 std::vector<char> moved_by_solid_mass(const Model& model);
 

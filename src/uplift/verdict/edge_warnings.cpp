@@ -6,22 +6,16 @@
 
 #include "uplift/base/format.h"
 #include "uplift/laws/macro_element.h"
+#include "uplift/model/rigid_parts.h"
 
 namespace uplift {
 namespace {
 
-/// Whether nodes move as one body.
-bool is_rigid(const Model& model, const std::vector<int>& nodes) {
-  const auto tied = [&](int node) {
-    return std::ranges::any_of(model.assembly.ties, [node](const Assembly::Tie& tie) { return tie.slave == node; });
-  };
-  return nodes.size() == 1 || (!nodes.empty() && std::ranges::all_of(nodes, tied));
-}
-
 /// The points of a rigid base that stand on its edge are the last one alone: its area is that of the division, not of the ground.
-std::string unbounded_pressure(const BuiltCase& built, std::size_t k, double uplifted, const InterfaceVerdict& said) {
+std::string unbounded_pressure(const BuiltCase& built, std::size_t k, double uplifted, const std::vector<bool>& tied,
+                               const InterfaceVerdict& said) {
   const VerdictNumber* pressure = find_number(said.numbers, "max_toe_pressure");
-  if (!built.model.interfaces[k].cone || !pressure || !(uplifted > 0) || !is_rigid(built.model, built.facts[k].upper)) return "";
+  if (!built.model.interfaces[k].cone || !pressure || !(uplifted > 0) || !is_one_body(built.facts[k].upper, tied)) return "";
   return fmt::format(
       "the largest pressure of {} ({}) is no pressure of the ground: a rigid base that opens on constraints stands on its edge, where the "
       "pressure has no bound and grows with the number of points; forces and moments hold; take a joint of finite stiffness for pressures",
@@ -43,7 +37,7 @@ std::string constant_loads_as_weight(const InterfaceVerdict& said) {
   if (!find_number(said.numbers, "min_overturning_safety") || !(said.counted_as_weight > 0)) return "";
   return fmt::format(
       "the safety against overturning of {} counts the moment of constant loads other than the weight, {} where the base bears them, with "
-      "what stabilises, because other bases or supports share the loads; compare the moments about the toe by hand",
+      "what stabilises, because other bases, walls or supports share the loads; compare the moments about the toe by hand",
       said.name, format_quantity(said.counted_as_weight, "N m"));
 }
 
@@ -54,8 +48,9 @@ std::string beyond_disc_on_springs(const Interface& interface, const InterfaceVe
   const VerdictNumber* reached = find_number(said.numbers, "max_eccentricity");
   if (foundation == nullptr || foundation->elasticity().shape != of_a_disc || !reached || !(std::abs(reached->value) > most)) return "";
   return fmt::format(
-      "{} reaches e/D = {:.2g}, beyond what shape_number = 8 is meant for: beside a disc on springs that do not pull its uplifted share is "
-      "46.7 instead of 51.8 % and its rotation 31 % too large at e/D = 0.3, 73.3 instead of 81.8 % and 86 % at 0.4",
+      "{} reaches e/D = {:.2g}, beyond what shape_number = 8 is meant for: compared with a disc on no-tension springs, the uplifted share "
+      "is "
+      "too small (46.7 instead of 51.8 %) and the rotation 31 % too large at e/D = 0.3; 73.3 instead of 81.8 % and 86 % at 0.4",
       said.name, std::abs(reached->value));
 }
 
@@ -80,12 +75,13 @@ std::string damped_impacts(const BuiltCase& built, const VerdictNumbers& numbers
 
 std::vector<std::string> edge_warnings(const BuiltCase& built, const VerdictNumbers& numbers) {
   std::vector<std::string> found;
+  const std::vector<bool> tied = tied_nodes(built.model);
   for (std::size_t k = 0; k < std::min(numbers.bases(), built.model.interfaces.size()); ++k) {
     const InterfaceVerdict& said = numbers.interfaces[k];
     const VerdictNumber* ratio = find_number(said.numbers, "max_uplifted_ratio");
     const double uplifted = ratio ? ratio->value : 0;
     const Interface& interface = built.model.interfaces[k];
-    for (std::string text : {unbounded_pressure(built, k, uplifted, said), few_points(interface, uplifted, said),
+    for (std::string text : {unbounded_pressure(built, k, uplifted, tied, said), few_points(interface, uplifted, said),
                              constant_loads_as_weight(said), beyond_disc_on_springs(interface, said)})
       if (!text.empty()) found.push_back(std::move(text));
   }

@@ -265,6 +265,7 @@ InterfaceVerdict base_of(const BuiltCase& built, const RunResult& run, const Run
   if (base.pressed()) said.weight = base.rest.force, said.mean_pressure = base.rest.force / base.facts.area;
   said.width = base.shape.width;
   said.round = base.shape.outline == BaseShape::Outline::round;
+  said.springs = !base.interface.cone && !base.interface.footprint;
   said.counted_as_weight = base.counted_as_weight;
   add_uplift(base, built.verdict_request, said);
   add_strength(base, said.numbers);
@@ -302,9 +303,13 @@ std::string words_of_eccentricity(const InterfaceVerdict& said) {
   const VerdictNumber *one = find_number(said.numbers, "max_eccentricity"), *both = find_number(said.numbers, "max_eccentricity_sum");
   if (said.round) return "largest of M/N over the diameter";
   return one && both && both->value > counts * one->value
-             ? fmt::format("e1/B1 + e2/B2 up to {} (full contact: up to 1/6); largest of M/N over the width",
-                           format_value(*both->quantity, both->value))
+             ? fmt::format("e1/B1 + e2/B2 up to {}{}; largest of M/N over the width", format_value(*both->quantity, both->value),
+                           said.springs ? " (full contact: up to 1/6)" : "")
              : "largest of M/N over the width";
+}
+
+std::string label_of_eccentricity(const InterfaceVerdict& said) {
+  return said.round ? "Eccentricity e/D" : "Eccentricity e/B";
 }
 
 std::optional<double> uplift_of_tension(double t) {

@@ -31,6 +31,7 @@ struct InterfaceVerdict {
   double weight = 0, mean_pressure = 0;  // N, Pa: of the static state; 0 when nothing presses
   std::array<double, 2> width{};         // m, along t1 and t2
   bool round = false;                    // BaseShape::Outline
+  bool springs = false;                  // points on a joint, neither constraints nor a whole foundation
   double counted_as_weight = 0;          // N m, see BaseOverTime
   std::vector<VerdictNumber> numbers;    // those that there are, in the order of verdict_quantities
   struct Above {
@@ -46,7 +47,7 @@ struct CriterionResult {
   enum class State { met, not_met, undetermined } state = State::undetermined;
   std::optional<double> value = {};
   std::optional<double> time = {};
-  bool within_step_change = false;  // twice the step changes the value by as much as it is away from the limit
+  bool within_step_change = false;  // doubling the step changes the value by at least its distance from the limit
 };
 std::string_view to_string(CriterionResult::State);
 
@@ -89,7 +90,8 @@ std::optional<double> change_of(double value, double reference, double least);
 /// The same, and nothing either where the reference alone is below `least`: there is nothing that changes.
 std::optional<double> change_from(double reference, double value, double least);
 
-/// What max_eccentricity of a base is made of.
+/// "Eccentricity e/B", of a round base e/D, and what max_eccentricity of the base is made of.
+std::string label_of_eccentricity(const InterfaceVerdict&);
 std::string words_of_eccentricity(const InterfaceVerdict&);
 
 /// A number as it is printed wherever it appears: rounded once, here. A residual has no more decimals than its remaining variation.

@@ -24,7 +24,7 @@ constexpr Said standing_numbers[] = {{"max_uplifted_ratio", "Uplifted area"},
                                      {"max_compression", "Compression"},
                                      {"max_shear", "Base shear"},
                                      {"max_moment", "Base moment"},
-                                     {"max_eccentricity", "Eccentricity e/B"},
+                                     {"max_eccentricity", ""},
                                      {"min_sliding_safety", "Safety against sliding"},
                                      {"max_bearing_utilisation", "Utilisation of bearing capacity"},
                                      {"max_sliding_utilisation", "Utilisation of sliding resistance"},
@@ -54,7 +54,8 @@ void say_standing(const InterfaceVerdict& said, const std::string& of, Verdict& 
     if (number->quantity->is("residual_settlement")) detail = "mean of the base, from the unloaded structure";
     if (number->quantity->is("max_eccentricity")) detail = words_of_eccentricity(said);
     if (number->quantity->is("max_uplifted_ratio")) detail = "share with an open gap";
-    verdict.facts.push_back({each.label + of, uplift::format_value(*number->quantity, number->value), detail});
+    const std::string label = number->quantity->is("max_eccentricity") ? label_of_eccentricity(said) : each.label;
+    verdict.facts.push_back({label + of, uplift::format_value(*number->quantity, number->value), detail});
   }
 }
 

@@ -197,7 +197,8 @@ std::string_view to_string(StepCheck::State state) {
   return "";
 }
 
-void mark_criteria(VerdictNumbers& numbers) {
+void mark_criteria(VerdictNumbers& numbers, const VerdictNumbers& coarse) {
+  using enum CriterionResult::State;
   for (CriterionResult& result : numbers.criteria) {
     const VerdictNumber* number = nullptr;
     const auto look = [&](const std::vector<VerdictNumber>& list) {
@@ -208,7 +209,15 @@ void mark_criteria(VerdictNumbers& numbers) {
       if (said.name == result.interface) look(said.numbers);
     for (const BeamVerdict& beam : numbers.beams)
       if (beam.name == result.interface) look(beam.numbers);
-    if (!number || !number->coarse || !result.value) continue;
+    if (!number || !number->coarse || !result.value) {  // one of the runs has no such number: what it says of the criterion
+      const auto other = std::ranges::find_if(coarse.criteria, [&](const CriterionResult& each) {
+        return each.criterion.quantity == result.criterion.quantity && each.criterion.limit == result.criterion.limit &&
+               each.interface == result.interface;
+      });
+      result.within_step_change =
+          other != coarse.criteria.end() && result.state != undetermined && other->state != undetermined && other->state != result.state;
+      continue;
+    }
     const bool sign_counts = result.criterion.quantity->at_least || number->quantity->name.starts_with("change_of");
     const double size = sign_counts ? number->value : std::abs(number->value);
     const double change = std::abs(*number->coarse - number->value);
@@ -229,7 +238,7 @@ void compare_steps(VerdictNumbers& numbers, const VerdictNumbers& coarse, StepCh
   for (BeamVerdict& beam : numbers.beams) compare_numbers(beam.numbers, numbers_named(coarse.beams, beam.name), beam.name, scale, check);
   for (StoreyVerdict& storey : numbers.storeys)
     compare_numbers(storey.numbers, numbers_named(coarse.storeys, storey.name), storey.name, scale, check);
-  mark_criteria(numbers);
+  mark_criteria(numbers, coarse);
   judge(check);
 }
 

@@ -81,8 +81,9 @@ inline constexpr int parts_of_time = 20;
 /// to the larger value, which counts as at least a tenth of the peak of the spectrum.
 StepCheck check_step(const BuiltCase& built, const RunResult& run, const FloorRun* floors, const Companion& companion,
                      VerdictNumbers& numbers);
-/// Marks the criteria whose number, once compared, changes by as much as it is away from the limit.
-void mark_criteria(VerdictNumbers& numbers);
+/// Marks the criteria whose number, once compared, changes by at least its distance from the limit; where one of the runs has no such
+/// number, those that the other run decides otherwise.
+void mark_criteria(VerdictNumbers& numbers, const VerdictNumbers& coarse);
 /// The comparison alone: fills the rest of a check whose steps are known.
 void compare_steps(VerdictNumbers& numbers, const VerdictNumbers& coarse, StepCheck& check);
 /// The peaks of moment, compression and pressure of every base in twentieths of the time. One that the other run reaches a tenth of a part

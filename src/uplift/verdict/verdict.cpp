@@ -202,7 +202,7 @@ void say_forces(const BuiltCase& built, const RunResult& run, Verdict& verdict) 
                            true, moment ? format_step_change(*moment) : ""});
   for (const InterfaceVerdict& said : bases_of(verdict)) {
     const std::string of = of_interface(verdict, said);
-    say(find_number(said.numbers, "max_eccentricity"), "Eccentricity e/B" + of, words_of_eccentricity(said), verdict);
+    say(find_number(said.numbers, "max_eccentricity"), label_of_eccentricity(said) + of, words_of_eccentricity(said), verdict);
     say(find_number(said.numbers, "min_overturning_safety"), "Safety against overturning" + of, "least, about the toe", verdict);
     say(find_number(said.numbers, "min_sliding_safety"), "Safety against sliding" + of, "least", verdict);
     say(find_number(said.numbers, "max_bearing_utilisation"), "Utilisation of bearing capacity" + of,

@@ -154,6 +154,9 @@ TEST(Units, GravityIsNotTheGram) {
   EXPECT_EQ(why_not("2 tonf/m3", "Pa/m"), "\"2 tonf/m3\" (a ton-force is 8.896, 9.807 or 9.964 kN; tf is 9.80665 kN)");
   EXPECT_EQ(why_not("5 kg/cm3", "Pa/m"), "\"5 kg/cm3\" (a density; the forces of kg, t and lb are kgf, tf and lbf)");
   EXPECT_EQ(why_not("5 t", "N"), "\"5 t\" (a mass; the forces of kg, t and lb are kgf, tf and lbf)");
+  EXPECT_EQ(why_not("30 deg", "m/s2"), "\"30 deg\" (an angle)");
+  EXPECT_EQ(why_not("3 %", "m/s2"), "\"3 %\" (a number)");
+  EXPECT_EQ(why_not("3 s", "m/s"), "\"3 s\" (a time)");
   EXPECT_EQ(why_not("0.3 g", "m/s2"), "\"0.3 g\" (g is the gram; standard gravity is g_n)");
   EXPECT_EQ(why_not("0.3 g0", "m/s2"), "\"0.3 g0\" (g0 is the gram to the power 0; standard gravity is g_n)");
   EXPECT_EQ(why_not("0.3 g0", "1"), "\"0.3 g0\" (g0 is the gram to the power 0; standard gravity is g_n)");

@@ -417,6 +417,19 @@ TEST(CaseGround, SidesThatHoldTheWaveBackAreWarnedOf) {
   }
 }
 
+/// A name that another wave has already is not given again.
+TEST(CaseGround, WavesOfOneNameAreNumbered) {
+  std::string text = soil + supports(false) + boundaries(false, "name = \"a\", wave = \"SV\"", true);
+  for (const char* name : {"a", "a 2", "a"})
+    text += std::string("[[absorbing]]\ngroup = \"soil_bottom\"\nincident = { name = \"") + name +
+            "\", wave = \"P\", kind = \"incoming\", velocity = 0.1, function = \"pulse\" }\n";
+  const Case read = read_text(text + stages(0.1, 2e-3), ground(Cell::quad4, 2, false));
+  std::vector<std::string> names;
+  for (const CaseAbsorbing& each : read.input->absorbing)
+    if (each.incident) names.push_back(each.incident->name);
+  EXPECT_EQ(names, (std::vector<std::string>{"a", "a 3", "a 2", "a 4"}));
+}
+
 TEST(CaseGround, HeldAbsorbingFacesAreWarnedOf) {
   const std::string text = soil + supports(false) + boundaries(false, "wave = \"SV\"", true) + stages(0.1, 2e-3);
   for (const bool everywhere : {true, false}) {

@@ -81,6 +81,21 @@ TEST(IdleInput, ABodyThatASupportHolds) {
   EXPECT_FALSE(warns(footing + weight + shaking + statics + dynamics, "is held"));
 }
 
+/// Half of a symmetric model and a plane motion hold one rocking axis, and the base rocks about the other.
+TEST(IdleInput, ABodyInSpaceThatASupportHolds) {
+  const auto held = [](const std::string& fixed) {
+    return "title = \"raft\"\n[nodes]\nbase = [0, 0, 0]\n[[rigid]]\nname = \"raft\"\nnode = \"base\"\nmass = 2e4\ninertias = [5e4, 8e4, "
+           "1.2e5]\n[[interface]]\nname = \"soil\"\nfooting = { body = \"base\", width = 6, length = 4, points = 7, points_across = 5 }\n"
+           "law = { type = \"springs\", K_n = 5e7, K_t = 2e7, tangential = \"bonded\" }\n[gravity]\nacceleration = [0, 0, -9.81]\n"
+           "[[support]]\nnode = \"base\"\nfixed = [" +
+           fixed + "]\n" + statics;
+  };
+  EXPECT_FALSE(warns(held("\"uy\", \"rx\", \"rz\""), "is held"));
+  EXPECT_FALSE(warns(held("\"ux\", \"ry\", \"rz\""), "is held"));
+  EXPECT_TRUE(warns(held("\"ux\", \"rx\", \"ry\", \"rz\""), "is held (rx, ry)"));
+  EXPECT_TRUE(warns(held("\"ux\", \"uz\", \"rx\""), "is held (uz)"));
+}
+
 TEST(IdleInput, TheSameTwice) {
   const std::string second =
       "[[interface]]\nname = \"again\"\nfooting = { body = \"base\", width = 3, points = 21 }\nlaw = { type = \"springs\", K_n = 1e8 }\n";
@@ -88,6 +103,8 @@ TEST(IdleInput, TheSameTwice) {
                     mass = "[[mass]]\nnode = \"base\"\nmass = 1e3\n", rest = footing + weight + shaking + statics + dynamics;
   EXPECT_TRUE(warns(rest + second, place));
   EXPECT_FALSE(warns(rest + support::replaced(second, "points = 21", "points = 21, offset = [5, 0]"), place));
+  EXPECT_FALSE(warns(rest + support::replaced(second, "width = 3", "width = 1"), place)) << "a pad inside a wider one";
+  EXPECT_FALSE(warns(rest + support::replaced(second, "points = 21", "points = 11"), place));
   EXPECT_FALSE(warns(rest + load + mass, "both act"));
   EXPECT_TRUE(warns(rest + load + load, "this [[load]] is the same as that of line"));
   EXPECT_FALSE(warns(rest + load + support::replaced(load, "1e3", "2e3"), "both act"));

@@ -240,7 +240,6 @@ type = "static"
   const RunResult run = run_of(built);
   ASSERT_EQ(run.status, RunStatus::completed) << run.reason;
   // the moment r x F over the stiffness: the areas of 3 x 3 points times x2 are 32 m4 about both axes, twice that about the vertical
-  // that
   const double x = -4e5 / (2e8 * 32), y = 3e5 / (2e8 * 32), z = 1.8e5 / (1e8 * 64);
   EXPECT_NEAR(largest_drift(built, run, Drift::with_rotation)->value, std::hypot(y * 10 + z * 2, z * 3 - x * 10), 1e-12);
   EXPECT_NEAR(largest_drift(built, run, Drift::without_rotation)->value, 0, 1e-12);

@@ -128,7 +128,8 @@ TEST(VerdictNumbersTest, AnEccentricWeightStandsNearerToOneToe) {
   EXPECT_NEAR(number(numbers_of(built, run_of({right(0.5), right(0.25)}, 0.1), nullptr), "min_overturning_safety"), 8, 1e-12);
 }
 
-BuiltCase raft(double azimuth = 0.3) {
+BuiltCase raft(double azimuth = 0.3,
+               const std::string& law = "{ type = \"springs\", K_n = 5e7, K_t = 2e7, tangential = \"coulomb\", friction = 0.7 }") {
   return built_of(R"(title = "raft"
 [nodes]
 base = [0, 0, 0]
@@ -140,8 +141,7 @@ inertias = [5e4, 8e4, 1.2e5]
 [[interface]]
 name = "soil"
 footing = { body = "base", width = 6, length = 4, points = 7, points_across = 5, azimuth = )" +
-                  fmt::format("{}", azimuth) + R"( }
-law = { type = "springs", K_n = 5e7, K_t = 2e7, tangential = "coulomb", friction = 0.7 }
+                  fmt::format("{}", azimuth) + " }\nlaw = " + law + R"(
 [gravity]
 acceleration = [0, 0, -9.81]
 [[stage]]
@@ -239,6 +239,7 @@ type = "static"
     EXPECT_NEAR(number(numbers, "max_eccentricity"), 0.3, 1e-12) << angle;
     EXPECT_EQ(find_number(numbers.interfaces[0].numbers, "max_eccentricity_sum"), nullptr);
     EXPECT_EQ(words_of_eccentricity(numbers.interfaces[0]), "largest of M/N over the diameter");
+    EXPECT_EQ(label_of_eccentricity(numbers.interfaces[0]), "Eccentricity e/D");
   }
   const BuiltCase rectangle = raft(0);  // 6 m by 4 m
   const VerdictNumbers both = numbers_of(rectangle, thrust_at(2.25, 0.8), nullptr),
@@ -248,6 +249,10 @@ type = "static"
   EXPECT_EQ(words_of_eccentricity(both.interfaces[0]),
             "e1/B1 + e2/B2 up to 0.575 (full contact: up to 1/6); largest of M/N over the width");
   EXPECT_EQ(words_of_eccentricity(one.interfaces[0]), "largest of M/N over the width");
+  EXPECT_EQ(label_of_eccentricity(one.interfaces[0]), "Eccentricity e/B");
+  const BuiltCase on_constraints = raft(0, "{ type = \"coulomb\", friction = 0.7 }");  // open on one side under any moment
+  EXPECT_EQ(words_of_eccentricity(numbers_of(on_constraints, thrust_at(2.25, 0.8), nullptr).interfaces[0]),
+            "e1/B1 + e2/B2 up to 0.575; largest of M/N over the width");
 }
 
 /// A base that still goes round on an ellipse: how far it moves does not depend on the axes.

@@ -81,6 +81,31 @@ TEST(StepCheck, CriteriaNearTheirLimitAreMarked) {
   EXPECT_FALSE(marked(0.893));
 }
 
+/// A number that one of the runs lacks has no change: what the other run decides counts.
+TEST(StepCheck, CriteriaThatTheRunsDecideDifferentlyAreMarked) {
+  using State = CriterionResult::State;
+  const auto with = [](std::vector<VerdictNumber> of_base, State state) {
+    VerdictNumbers numbers = numbers_with(std::move(of_base));
+    CriterionResult& result = numbers.criteria.emplace_back();
+    result.criterion.quantity = find_verdict_quantity("longest_full_loss");
+    result.criterion.limit = 0.1;
+    result.interface = "soil";
+    result.state = state;
+    if (const VerdictNumber* found = find_number(numbers.interfaces.front().numbers, "longest_full_loss")) result.value = found->value;
+    return numbers;
+  };
+  const auto marked = [](VerdictNumbers numbers, const VerdictNumbers& coarse) {
+    compared(numbers, coarse);
+    return numbers.criteria.front().within_step_change;
+  };
+  const auto lost = [](double duration) { return std::vector{number("longest_full_loss", duration)}; };
+  EXPECT_TRUE(marked(with({}, State::met), with(lost(0.2), State::not_met)));
+  EXPECT_TRUE(marked(with(lost(0.2), State::not_met), with({}, State::met)));
+  EXPECT_FALSE(marked(with({}, State::met), with(lost(0.05), State::met)));
+  EXPECT_FALSE(marked(with({}, State::met), with({}, State::met)));
+  EXPECT_FALSE(marked(with({}, State::undetermined), with(lost(0.2), State::not_met)));
+}
+
 TEST(StepCheck, SafetiesByTheirInverse) {
   EXPECT_NEAR(change_of_one("min_overturning_safety", 1.25, 1.0), 0.2, 1e-15);
   EXPECT_NEAR(change_of_one("min_sliding_safety", 40, 20), 0.025 / 0.1, 1e-15) << "both are far from sliding";

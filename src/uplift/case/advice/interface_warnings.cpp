@@ -13,6 +13,7 @@
 #include "uplift/case/schema/case_input.h"
 #include "uplift/interface/cut_joint.h"
 #include "uplift/laws/macro_element.h"
+#include "uplift/model/rigid_parts.h"
 
 namespace uplift {
 namespace {
@@ -120,35 +121,44 @@ void warn_unloaded(const Case& read, const BuiltCase& built, std::vector<std::st
     said.push_back("nothing presses the base down, and it opens under any motion: [gravity] is missing");
 }
 
-/// A body on an interface that a support holds can neither turn nor lift off.
+/// A body on an interface that a support holds can neither turn nor lift off. In space one rocking axis alone is held by the symmetry of
+/// half a model or of a plane motion.
 void warn_held_bodies(const BuiltCase& built, std::vector<std::string>& said) {
+  constexpr double along = 0.5;  // the normal
   const Space space = built.model.space;
   for (std::size_t k = 0; k < built.bases(); ++k) {
     const InterfaceFacts& facts = built.facts[k];
     const int node = facts.body.empty() ? -1 : built.model.find_node(facts.body);
     if (node < 0) continue;
-    std::string held;
+    const Vec3 normal = mean_normal(built.model.interfaces[k]);
+    Index vertical = 0;  // the axis nearest to the normal, about which nothing rocks
+    normal.cwiseAbs().maxCoeff(&vertical);
+    std::vector<std::string_view> held, rocks;
     for (int i = 0; i < space.unknowns(); ++i) {
-      const bool rocks = space.is_rotation(i) && (space.dimension == 2 || space.dof(i) != rz);
-      if ((rocks || i == space.up()) && !moves(built.model, built.model.at(node, space.dof(i))))
-        held += (held.empty() ? "" : ", ") + std::string(to_string(space.dof(i)));
+      if (moves(built.model, built.model.at(node, space.dof(i)))) continue;
+      if (!space.is_rotation(i) && std::abs(space.axis(i).dot(normal)) > along) held.push_back(to_string(space.dof(i)));
+      if (space.is_rotation(i) && std::abs(space.axis(i)[vertical]) < 1) rocks.push_back(to_string(space.dof(i)));
     }
+    if (static_cast<int>(rocks.size()) == space.dimension - 1) held.insert(held.end(), rocks.begin(), rocks.end());
     if (!held.empty())
       said.push_back(
-          fmt::format("the body {} of the base \"{}\" is held ({}) by a support, and the base cannot open as it would without: "
+          fmt::format("the body {} of the base \"{}\" is held ({}) by a support, and the base cannot open as it would without it: "
                       "a body that stands on an interface needs no [[support]]",
-                      facts.body, facts.name, held));
+                      facts.body, facts.name, fmt::join(held, ", ")));
   }
 }
 
 /// Two bases under one body at one place: their stiffnesses and capacities add up.
 void warn_repeated_bases(const BuiltCase& built, std::vector<std::string>& said) {
+  constexpr double same = 1e-6;
   for (std::size_t k = 0; k < built.bases(); ++k)
     for (std::size_t j = 0; j < k; ++j) {
       const Interface &one = built.model.interfaces[j], &other = built.model.interfaces[k];
+      const double area = built.facts[j].area;
       if (built.facts[k].body.empty() || built.facts[k].body != built.facts[j].body) continue;
-      if ((one.reference - other.reference).norm() > 1e-6 * std::sqrt(built.facts[j].area)) continue;
-      said.push_back(fmt::format("\"{}\" and \"{}\" stand at the same place under the body {}: the ground is there twice", one.name,
+      if ((one.reference - other.reference).norm() > same * std::sqrt(area)) continue;
+      if (std::abs(built.facts[k].area - area) > same * area || one.batch.points != other.batch.points) continue;  // a pad inside a ring
+      said.push_back(fmt::format("\"{}\" and \"{}\" stand at the same place under the body {}: the ground is counted twice", one.name,
                                  other.name, built.facts[k].body));
     }
 }
@@ -183,17 +193,11 @@ Division division_along(const Model& model, const Interface& interface, const In
   return made;
 }
 
-bool is_one_body(const Model& model, const std::vector<int>& nodes) {
-  const auto tied = [&](int node) {
-    return std::ranges::find(model.assembly.ties, node, &Assembly::Tie::slave) != model.assembly.ties.end();
-  };
-  return nodes.size() == 1 || std::ranges::all_of(nodes, tied);
-}
-
 /// Two or three points hardly open: on springs a base opens under the moment W I/(A x) with the farthest point at x, a rectangle under W
 /// B/6.
 void warn_few_points(const BuiltCase& built, std::vector<std::string>& said) {
   constexpr int enough = 4;
+  const std::vector<bool> tied = tied_nodes(built.model);
   for (std::size_t k = 0; k < built.bases(); ++k) {
     const Interface& interface = built.model.interfaces[k];
     const InterfaceFacts& facts = built.facts[k];
@@ -202,7 +206,7 @@ void warn_few_points(const BuiltCase& built, std::vector<std::string>& said) {
     for (int axis = 0; axis + 1 < interface.space.dimension; ++axis) {
       const Division found = division_along(built.model, interface, facts, axis);
       if (found.points >= enough || !(found.width > 0) || !(found.farthest > 0)) continue;
-      const bool rigid = interface.cone && is_one_body(built.model, facts.upper);
+      const bool rigid = interface.cone && is_one_body(facts.upper, tied);
       const double overturns = 2 * found.farthest / found.width;
       if (rigid && overturns > 1 - 1e-6) continue;  // a block on its corners
       const double first = 6 * found.inertia / (found.farthest * found.width) - 1,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <unordered_map>
 
 #include "uplift/base/format.h"
 #include "uplift/base/units.h"
@@ -99,9 +100,8 @@ void warn_p_delta(const Case& read, const BuiltCase& built, std::vector<std::str
   if (wanted == read.input->stages.end()) return;
   if (const double share = second_order_of_solids(built); share > least_of_solids)
     said.push_back(
-        fmt::format("{}:{}: p_delta computes no second-order effects of solids, and {} of the moment of the weight that sways arises in "
-                    "them; make the part "
-                    "rigid with [[rigid]], or of beams",
+        fmt::format("{}:{}: p_delta computes no second-order effects of solids, and {} of the second-order moment of the weight arises in "
+                    "them; make the part rigid with [[rigid]], or of beams",
                     wanted->where("p_delta").file, wanted->where("p_delta").line, percent(share)));
   bool stood = false;
   for (const CaseStage& stage : read.input->stages) {
@@ -135,44 +135,39 @@ void warn_no_excitation(const BuiltCase& built, std::vector<std::string>& said) 
   if (!model.grounds.empty() || !model.motions.empty() || !model.time_load_tables.empty() || !varying_loads(model).empty()) return;
   said.push_back(
       "nothing drives the dynamic stage: there is no ground acceleration, incident wave, prescribed motion, load with a function or "
-      "initial "
-      "motion, and the structure stays as the static stage leaves it");
+      "initial motion, and the structure stays as the static stage leaves it");
 }
 
-/// The same table twice acts twice.
-template <class Table, class Same>
-void warn_repeated(const std::vector<Table>& tables, const char* name, const Same& same, std::vector<std::string>& said) {
-  for (std::size_t k = 0; k < tables.size(); ++k)
-    for (std::size_t j = 0; j < k; ++j)
-      if (same(tables[j], tables[k])) {
-        said.push_back(fmt::format("{}:{}: this [[{}]] is the same as that of line {}: both act, and their sum is twice the one",
-                                   tables[k].where().file, tables[k].where().line, name, tables[j].where().line));
-        break;
-      }
+/// The same table twice acts twice. `key`: a text that the same tables share.
+template <class Table, class Key, class Same>
+void warn_repeated(const std::vector<Table>& tables, const char* name, const Key& key, const Same& same, std::vector<std::string>& said) {
+  std::unordered_map<std::string, std::vector<const Table*>> seen;
+  for (const Table& table : tables) {
+    std::vector<const Table*>& others = seen[key(table)];
+    const auto first = std::ranges::find_if(others, [&](const Table* other) { return same(*other, table); });
+    if (first == others.end())
+      others.push_back(&table);
+    else
+      said.push_back(fmt::format("{}:{}: this [[{}]] is the same as that of line {}: both act, so the effect is doubled",
+                                 table.where().file, table.where().line, name, (*first)->where().line));
+  }
 }
 
 void warn_repetitions(const CaseInput& input, std::vector<std::string>& said) {
   const auto name = [](const std::optional<NameUsed>& function) { return function ? function->name : std::string(); };
   warn_repeated(
-      input.loads, "load",
-      [&](const CaseLoad& a, const CaseLoad& b) {
-        return a.of.name() == b.of.name() && a.of.node.has_value() == b.of.node.has_value() && a.force == b.force &&
-               a.traction == b.traction && a.pressure == b.pressure && a.moment == b.moment && !a.profile && !b.profile &&
-               name(a.function) == name(b.function);
+      input.loads, "load", [&](const CaseLoad& load) { return load.of.name() + '\n' + name(load.function); },
+      [](const CaseLoad& a, const CaseLoad& b) {
+        return a.of.node.has_value() == b.of.node.has_value() && a.force == b.force && a.traction == b.traction &&
+               a.pressure == b.pressure && a.moment == b.moment && !a.profile && !b.profile;
       },
       said);
   warn_repeated(
-      input.masses, "mass",
-      [](const CaseMass& a, const CaseMass& b) {
-        return a.node.name == b.node.name && a.mass && a.mass == b.mass && a.inertia == b.inertia;
-      },
-      said);
+      input.masses, "mass", [](const CaseMass& mass) { return mass.node.name; },
+      [](const CaseMass& a, const CaseMass& b) { return a.mass && a.mass == b.mass && a.inertia == b.inertia; }, said);
   warn_repeated(
-      input.grounds, "ground_acceleration",
-      [](const CaseGround& a, const CaseGround& b) {
-        return a.direction == b.direction && a.amplitude == b.amplitude && a.function.name == b.function.name;
-      },
-      said);
+      input.grounds, "ground_acceleration", [](const CaseGround& ground) { return ground.function.name; },
+      [](const CaseGround& a, const CaseGround& b) { return a.direction == b.direction && a.amplitude == b.amplitude; }, said);
 }
 
 /// The ground acceleration moves the frame of the whole model, the ground below the absorbing faces too, and the wave comes on top.
@@ -180,9 +175,8 @@ void warn_ground_and_wave(const CaseInput& input, std::vector<std::string>& said
   const auto wave = std::ranges::find_if(input.absorbing, [](const CaseAbsorbing& each) { return each.incident.has_value(); });
   if (wave == input.absorbing.end() || input.grounds.empty()) return;
   said.push_back(
-      fmt::format("{}:{}: this ground acceleration acts together with the incident wave of line {}: the earthquake is there twice; take "
-                  "the wave, or the "
-                  "ground acceleration and a base that is held",
+      fmt::format("{}:{}: this ground acceleration acts together with the incident wave of line {}: the earthquake is counted twice; "
+                  "take the wave, or the ground acceleration and a base that is held",
                   input.grounds.front().where().file, input.grounds.front().where().line, wave->incident->where().line));
 }
 

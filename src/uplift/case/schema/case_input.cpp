@@ -1,6 +1,7 @@
 #include "uplift/case/schema/case_input.h"
 
 #include <map>
+#include <set>
 
 #include "uplift/mesh/mesh.h"
 
@@ -17,10 +18,18 @@ std::vector<Table> all(const Values& root, std::string_view key, Table (*read)(c
 
 /// Waves of the same name, as without one, are told apart: a free field follows a wave by its name.
 void number_waves(std::vector<CaseAbsorbing>& absorbing) {
+  std::set<std::string> stated, used;
+  for (const CaseAbsorbing& each : absorbing)
+    if (each.incident) stated.insert(each.incident->name);
   std::map<std::string, int> count;
-  for (CaseAbsorbing& each : absorbing)
-    if (each.incident)
-      if (const int number = ++count[each.incident->name]; number > 1) each.incident->name += " " + std::to_string(number);
+  for (CaseAbsorbing& each : absorbing) {
+    if (!each.incident || used.insert(each.incident->name).second) continue;
+    int& number = count.try_emplace(each.incident->name, 1).first->second;
+    std::string name;
+    do name = each.incident->name + " " + std::to_string(++number);
+    while (stated.contains(name) || !used.insert(name).second);
+    each.incident->name = name;
+  }
 }
 
 int dimension_of_nodes(const Values& root) {

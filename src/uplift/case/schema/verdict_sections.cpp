@@ -69,13 +69,11 @@ const Section& verdict_section() {
            .standard(0.01),
        text("top",
             "node that is the top, whose motion and drift are numbers of the verdict; absent: the highest node (or centre of mass of a "
-            "rigid "
-            "body) of what stands on the base, of equally high ones that nearest to its middle")
+            "rigid body) of what stands on the base, of equally high ones that nearest to its middle")
            .optional(),
        flag("step_check",
             "`uplift run` also runs the case with twice the step, and states by how much every number of the verdict changes: a third of "
-            "the "
-            "total time")
+            "the total time")
            .standard(true),
        tables("criterion", criterion_section(), "limits")}};
   return s;

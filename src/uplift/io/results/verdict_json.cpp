@@ -122,7 +122,7 @@ void write_criterion(ResultWriter& out, const CriterionResult& result) {
   out.word("kind", quantity.at_least ? "at_least" : "at_most", {"at_least", "at_most"}, "side of the limit on which the criterion is met");
   out.text("source", result.criterion.source, "source of the limit, as the case states it");
   out.flag("within_step_change", result.within_step_change,
-           "whether twice the step changes the value by as much as it is away from the limit");
+           "whether doubling the step changes the value by at least its distance from the limit");
 }
 
 void write_step_check(ResultWriter& out, const StepCheck& check) {
