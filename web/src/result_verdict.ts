@@ -21,7 +21,7 @@ const OF_BASE: Captions = [
   ["min_compression", "Least compression"],
   ["max_toe_pressure", "Toe pressure"],
   ["toe_pressure_ratio", "Toe pressure over static mean"],
-  ["max_eccentricity", "Eccentricity e/B"],
+  ["max_eccentricity", "Eccentricity over width"],
   ["min_overturning_safety", "Safety against overturning"],
   ["min_sliding_safety", "Safety against sliding"],
   ["max_bearing_utilisation", "Utilisation of bearing capacity"],

@@ -81,7 +81,7 @@ export interface Criterion {
   limitText: string;
   atLeast: boolean;
   source: string;
-  /** Twice the step changes the value by as much as it is away from the limit. */
+  /** Doubling the step changes the value by at least its distance from the limit. */
   uncertain: boolean;
 }
 

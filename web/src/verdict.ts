@@ -73,7 +73,7 @@ function criterion_row(criterion: Criterion): HTMLElement {
   return h("li", { class: `criterion is-${state.replace(" ", "-")}` },
     h("span", { class: "state" }, h("i", { "aria-hidden": "true" }, STATE_SIGN[state]), ` ${state}`),
     h("span", { class: "what" }, label + (criterion.interface ? ` (${criterion.interface})` : "")),
-    h("span", { class: "value" }, tied(valueText), `, limit ${atLeast ? "≥" : "≤"} ${tied(limitText)}`, uncertain ? "; not certain: twice the step changes the value by as much as it is away from the limit" : ""),
+    h("span", { class: "value" }, tied(valueText), `, limit ${atLeast ? "≥" : "≤"} ${tied(limitText)}`, uncertain ? "; not certain: doubling the step changes the value by at least its distance from the limit" : ""),
     h("span", { class: "by" }, source));
 }
 
