@@ -42,16 +42,17 @@ PartitionGraph::PartitionGraph(std::vector<PetscInt> unknowns, std::vector<std::
           take(member[m]);
     }
   };
-  std::int64_t neighbours = 0;
-  for (std::size_t vertex = 0; vertex < vertices; ++vertex) each_neighbour(vertex, [&](PetscInt) { ++neighbours; });
-  if (neighbours > PETSC_MAX_INT) return;
-  std::ranges::fill(seen, -1);
   PetscMalloc1(vertices + 1, &first_);
-  first_[0] = 0;
-  for (std::size_t vertex = 0; vertex < vertices; ++vertex) {
-    first_[vertex + 1] = first_[vertex];
-    each_neighbour(vertex, [&](PetscInt) { ++first_[vertex + 1]; });
+  std::int64_t neighbours = 0;
+  for (std::size_t vertex = 0; vertex < vertices && neighbours <= PETSC_MAX_INT; ++vertex) {
+    first_[vertex] = static_cast<PetscInt>(neighbours);
+    each_neighbour(vertex, [&](PetscInt) { ++neighbours; });
   }
+  if (neighbours > PETSC_MAX_INT) {
+    PetscFree(first_);
+    return;
+  }
+  first_[vertices] = static_cast<PetscInt>(neighbours);
   PetscMalloc1(std::max<std::size_t>(static_cast<std::size_t>(first_[vertices]), 1), &neighbour_);
   std::ranges::fill(seen, -1);
   for (std::size_t vertex = 0; vertex < vertices; ++vertex) {

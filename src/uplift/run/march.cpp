@@ -224,11 +224,9 @@ void Runner::March::keep(long step) {
   run_.march = stepper_.march_state();
   const std::vector<int> number = numbers_by_nodes(runner_.model_);
   if (number.empty()) return runner_.keeping_.keep(run_);
-  std::vector<int> back(number.size());
-  for (std::size_t i = 0; i < number.size(); ++i) back[static_cast<std::size_t>(number[i])] = static_cast<int>(i);
   renumber(number, run_);  // for as long as it is handed out: tables and frames make a copy dear
   runner_.keeping_.keep(run_);
-  renumber(back, run_);
+  renumber(inverse(number), run_);
 }
 
 /// Hands on to the next stage.

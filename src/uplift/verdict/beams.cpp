@@ -23,7 +23,7 @@ void add_number(std::vector<VerdictNumber>& numbers, QuantityName name, const Re
   number.least = least;
   if (bonded != nullptr) {
     number.bonded = bonded->value;
-    number.change = change_from(bonded->value, reached.value, least);
+    number.change = change_beside(reached.value, bonded->value, least);
   }
   numbers.push_back(number);
 }

@@ -48,9 +48,8 @@ std::string beyond_disc_on_springs(const Interface& interface, const InterfaceVe
   const VerdictNumber* reached = find_number(said.numbers, "max_eccentricity");
   if (foundation == nullptr || foundation->elasticity().shape != of_a_disc || !reached || !(std::abs(reached->value) > most)) return "";
   return fmt::format(
-      "{} reaches e/D = {:.2g}, beyond what shape_number = 8 is meant for: compared with a disc on no-tension springs, the uplifted share "
-      "is "
-      "too small (46.7 instead of 51.8 %) and the rotation 31 % too large at e/D = 0.3; 73.3 instead of 81.8 % and 86 % at 0.4",
+      "{} reaches e/D = {:.2g}, beyond what shape_number = 8 is meant for: compared with a disc on no-tension springs, the uplifted "
+      "share is too small (46.7 instead of 51.8 %) and the rotation 31 % too large at e/D = 0.3; 73.3 instead of 81.8 % and 86 % at 0.4",
       said.name, std::abs(reached->value));
 }
 

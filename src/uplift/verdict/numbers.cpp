@@ -190,7 +190,7 @@ void add_bonded(const BaseOverTime& base, const BaseOverTime& bonded, std::vecto
   for (VerdictNumber& number : numbers)
     if (const VerdictNumber* other = find_number(reference.numbers, *number.quantity)) {
       number.bonded = other->value;
-      number.change = change_from(other->value, number.value, std::max(number.least, other->least));
+      number.change = change_beside(number.value, other->value, std::max(number.least, other->least));
     }
   const auto add_change = [&numbers](QuantityName name, QuantityName of) {
     if (const VerdictNumber* number = find_number(numbers, of); number && number->change) add(numbers, name, *number->change);
@@ -213,7 +213,7 @@ void add_whole(std::vector<VerdictNumber>& numbers, QuantityName name, const std
   numbers.back().least = least;
   if (!bonded) return;
   numbers.back().bonded = std::abs(bonded->value);
-  numbers.back().change = change_from(std::abs(bonded->value), std::abs(peak->value), least);
+  numbers.back().change = change_beside(std::abs(peak->value), std::abs(bonded->value), least);
 }
 
 void add_motions(const BuiltCase& built, const RunResult& run, const RunResult* bonded, std::vector<VerdictNumber>& numbers) {
@@ -325,7 +325,7 @@ std::optional<double> change_of(double value, double reference, double least) {
   return std::max(value, reference) > least && from > 0 ? std::optional(value / from - 1) : std::nullopt;
 }
 
-std::optional<double> change_from(double reference, double value, double least) {
+std::optional<double> change_beside(double value, double reference, double least) {
   return reference > least ? change_of(value, reference, least) : std::nullopt;
 }
 

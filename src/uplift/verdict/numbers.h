@@ -88,7 +88,7 @@ inline constexpr double round_off_share = 1e-9;
 /// The relative change of a number: nothing where both are below `least`. A reference below it counts as `least`.
 std::optional<double> change_of(double value, double reference, double least);
 /// The same, and nothing either where the reference alone is below `least`: there is nothing that changes.
-std::optional<double> change_from(double reference, double value, double least);
+std::optional<double> change_beside(double value, double reference, double least);
 
 /// "Eccentricity e/B", of a round base e/D, and what max_eccentricity of the base is made of.
 std::string label_of_eccentricity(const InterfaceVerdict&);

@@ -363,9 +363,9 @@ TEST(VerdictNoise, AChangeNeedsSomethingThatChanges) {
   EXPECT_NEAR(change_of(1e-12, 5, 0.1).value(), -1, 1e-12);
   EXPECT_FALSE(change_of(0, 0, 0));
   EXPECT_FALSE(change_of(-1, 2, 0));
-  EXPECT_NEAR(change_from(2, 3, 0.1).value(), 0.5, 1e-15);
-  EXPECT_NEAR(change_from(5, 1e-12, 0.1).value(), -1, 1e-12);
-  EXPECT_FALSE(change_from(1e-12, 5, 0.1));  // nothing was there that could change
+  EXPECT_NEAR(change_beside(3, 2, 0.1).value(), 0.5, 1e-15);
+  EXPECT_NEAR(change_beside(1e-12, 5, 0.1).value(), -1, 1e-12);
+  EXPECT_FALSE(change_beside(5, 1e-12, 0.1));  // nothing was there that could change
 }
 
 /// Vertical motion alone: a shear of round-off is neither compared nor a safety against sliding.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "uplift/case/mesh/mesh.h"
+#include "uplift/model/rigid_parts.h"
 
 namespace uplift {
 namespace {
@@ -14,8 +15,7 @@ double height_at(const Model& model, int node) {
 
 /// Lowest and highest place of the deformable solids among these nodes [m]; low > high: none.
 std::pair<double, double> range_of_solids(const Model& model, const std::vector<char>& carried) {
-  std::vector<char> tied(model.nodes.size(), 0);
-  for (const Assembly::Tie& tie : model.assembly.ties) tied[static_cast<std::size_t>(tie.slave)] = 1;
+  const std::vector<bool> tied = tied_nodes(model);
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (const auto& element : model.elements) {
     const std::span<const int> nodes = element->nodes();
