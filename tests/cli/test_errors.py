@@ -43,7 +43,8 @@ class BadInput(CliTest):
 
     def test_empty_name_of_the_results(self):
         self.write(BASE)
-        self.assertIn("expected a name, found an empty one", self.uplift("run", "case.toml", "-o", "", expect=2).stderr)
+        done = self.uplift("run", "case.toml", "-o", "", expect=2)
+        self.assertEqual(done.stderr.strip(), "error: --out: expected a name, found an empty one")
 
     def test_tons_are_refused(self):
         text = self.replace("mass = 24317", 'mass = "24 tons"')

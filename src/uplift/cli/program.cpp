@@ -48,7 +48,8 @@ void take_case(CLI::App* command, Options& options) {
 }
 /// Such as that of a variable of the shell that is not set.
 std::string refuse_empty(const std::string& name) {
-  return name.empty() ? "expected a name, found an empty one" : "";
+  if (name.empty()) throw uplift::InputError({}, "--out", "a name", "an empty one");
+  return {};
 }
 void take_output(CLI::App* command, Options& options) {
   command
